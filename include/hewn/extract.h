@@ -1,0 +1,63 @@
+/* From a field to a mesh, on a device. */
+#ifndef HEWN_EXTRACT_H
+#define HEWN_EXTRACT_H
+
+#include "hewn/device.h"
+#include "hewn/field.h"
+#include "hewn/triangles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct hewn_extractor hewn_extractor;
+
+typedef enum hewn_method { HEWN_METHOD_MARCHING_CUBES } hewn_method;
+
+/* Where and how finely. Zero everywhere but `bounds` is a sensible default. */
+typedef struct hewn_extract_desc {
+    hewn_box bounds;     /* scene units; the sides grow symmetrically to whole cells */
+    uint32_t resolution; /* cells on the longest side; 0: 128 (ignored where `cell` is given) */
+    double cell;         /* length of a cell's side in scene units; 0: from `resolution` */
+    hewn_method method;
+    bool open; /* leave the surface open where it leaves the bounds, instead of closing it there with a cap */
+    const hewn_progress *progress;
+} hewn_extract_desc;
+
+/* What an extraction did. Seconds are wall time on the caller's thread; begin counts from the start of the run. */
+typedef struct hewn_extract_stage {
+    const char *name; /* cull, evaluate, extract, read_back */
+    double begin, end;
+} hewn_extract_stage;
+
+typedef struct hewn_extract_stats {
+    hewn_box bounds; /* as grown to whole cells */
+    double cell;
+    uint64_t cells[3];
+    uint64_t cells_visited; /* cells whose corners were evaluated */
+    uint64_t bricks_active; /* 8-cell bricks that could hold surface */
+    uint64_t cap_vertices;  /* that lie on the bounds because the surface was cut there */
+    bool left_bounds;       /* the surface reaches the bounds */
+    float max_residual;     /* see hewn_certificate */
+    hewn_extract_stage stages[8];
+    uint32_t stage_count;
+} hewn_extract_stats;
+
+/* Compiles a field for a device. The field may be changed or destroyed afterwards. Serves one thread at a time, as its
+ * device does, which must outlive it. */
+HEWN_API hewn_result hewn_extractor_create(hewn_device *device, const hewn_field *field, hewn_node root,
+                                           hewn_extractor **out, hewn_error *error);
+HEWN_API void hewn_extractor_destroy(hewn_extractor **extractor);
+
+/* Meshes the field: f < 0 is inside, everything else (0 and NaN too) outside. The triangles may live in memory of the
+ * device: destroy them before the device. HEWN_INVALID_ARGUMENT for bounds or a resolution that make no sense, or so
+ * far from the origin that float positions cannot tell vertices apart; HEWN_BAD_INPUT where there is no surface, saying
+ * why; HEWN_LIMIT; HEWN_CANCELLED; device errors. Marching cubes after Lorensen and Cline 1987, with one rule for
+ * ambiguous faces, vertices solved on the field itself. */
+HEWN_API hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_triangles *out,
+                                  hewn_extract_stats *stats, hewn_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,13 @@
+/* Hewn: implicit shapes into meshes that can be trusted. This header includes all others. */
+#ifndef HEWN_H
+#define HEWN_H
+
+#include "hewn/base.h"
+#include "hewn/device.h"
+#include "hewn/extract.h"
+#include "hewn/field.h"
+#include "hewn/io.h"
+#include "hewn/scene.h"
+#include "hewn/triangles.h"
+
+#endif

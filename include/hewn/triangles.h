@@ -1,0 +1,50 @@
+/* Plain triangle buffers, as the extraction makes them, and the certificate that says what they are. */
+#ifndef HEWN_TRIANGLES_H
+#define HEWN_TRIANGLES_H
+
+#include "hewn/field.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Indexed triangles, counter-clockwise seen from outside. Zero is the empty one. Owned by whoever holds the struct;
+ * move it by assignment and leave it with hewn_triangles_destroy(). */
+typedef struct hewn_triangles {
+    uint64_t vertex_count;
+    uint64_t triangle_count;
+    float *positions;             /* vertex_count × 3, scene units */
+    float *normals;               /* vertex_count × 3, unit length, outward; or NULL */
+    uint32_t *indices;            /* triangle_count × 3 */
+    void (*release)(void *owner); /* frees all three; where NULL they are from the heap */
+    void *owner;
+} hewn_triangles;
+
+HEWN_API void hewn_triangles_destroy(hewn_triangles *triangles);
+
+/* What was proven of a mesh. */
+typedef struct hewn_certificate {
+    bool closed;         /* every edge has a face on both sides */
+    bool manifold;       /* no edge has more than two faces, the faces at each vertex form one fan or one ring */
+    bool oriented;       /* the two faces of each edge run along it in opposite directions */
+    uint64_t components; /* of faces joined at shared vertices; isolated vertices do not count */
+    int64_t genus;       /* of all components together; -1 where the mesh is not closed, manifold and oriented */
+    uint64_t boundary_edges;
+    uint64_t non_manifold_edges;
+    uint64_t non_manifold_vertices;
+    uint64_t degenerate_faces; /* with two equal corners, or an area of exactly 0 */
+    double volume;             /* signed, scene units cubed; meaningful where closed and oriented */
+    double area;
+    hewn_box bounds;     /* of the vertices that faces use; all 0 where there is none */
+    double max_residual; /* set by the extraction: largest |f|/|grad f| in cells at a vertex; NaN where not known */
+} hewn_certificate;
+
+/* Examines triangles. Linear in their number, deterministic (sums in a fixed order). HEWN_BAD_INPUT for an index out of
+ * range or a position that is not finite, naming the first; HEWN_OUT_OF_MEMORY. `progress` may be NULL. */
+HEWN_API hewn_result hewn_certify(const hewn_triangles *triangles, const hewn_progress *progress, hewn_certificate *out,
+                                  hewn_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

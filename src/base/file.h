@@ -1,0 +1,27 @@
+/* Files: read whole with a size limit, and written under a temporary name that only success renames. */
+#ifndef HEWN_SRC_BASE_FILE_H
+#define HEWN_SRC_BASE_FILE_H
+
+#include "hewn/base.h"
+
+/* Reads a regular file, pipe or ("-") standard input of at most `limit` bytes. `*bytes` is owned by the caller
+ * (hewn_free) and has a NUL after its `*length` bytes. HEWN_IO names the file and the reason (HEWN_BAD_INPUT for a
+ * folder or more than `limit` bytes). */
+hewn_result hewn_file_read(const char *path, size_t limit, char **bytes, size_t *length, hewn_error *error);
+
+/* A buffered output that becomes visible under its name only when finished. Not thread-safe. */
+typedef struct hewn_output hewn_output;
+
+/* Opens `path` for writing: a temporary file beside it, or standard output for "-". */
+hewn_result hewn_output_create(const char *path, hewn_output **out, hewn_error *error);
+
+/* Appends bytes. An error (a full disk) is returned at once and again by every later call. */
+hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t length, hewn_error *error);
+
+/* Flushes, syncs, renames over `path` and destroys the output; on failure nothing is left behind. */
+hewn_result hewn_output_finish(hewn_output **output, hewn_error *error);
+
+/* Gives up: removes the temporary file. On &NULL does nothing. */
+void hewn_output_destroy(hewn_output **output);
+
+#endif

@@ -1,0 +1,52 @@
+/* A field made into shader code: one emitter, three flavours (point, interval, gradient), parameters in a buffer, so
+ * that a changed number needs no compilation. */
+#ifndef HEWN_SRC_EVAL_CODE_H
+#define HEWN_SRC_EVAL_CODE_H
+
+#include "field/graph.h"
+#include "gpu/gpu.h"
+
+typedef struct hewn_code hewn_code;
+
+/* Which functions a kernel calls; or them together. */
+typedef enum hewn_flavour {
+    HEWN_FLAVOUR_POINT = 1,    /* float field_point(float x, float y, float z) */
+    HEWN_FLAVOUR_INTERVAL = 2, /* vec2 field_interval(vec2 x, vec2 y, vec2 z): (lo, hi), contains all values that
+                                  field_point computes for arguments in there; [-inf, inf] where NaN is possible */
+    HEWN_FLAVOUR_GRADIENT = 4, /* vec4 field_gradient(float x, float y, float z): (d/dx, d/dy, d/dz, value), value with
+                                  field_point's bits */
+    HEWN_FLAVOUR_ROW = 8 /* uint field_row_inside(uint i, float y, float z): bit k set where field_point(sample_x(i +
+                            k), y, z) < 0, k = 0..7. The kernel declares `float sample_x(uint i);` before the field's
+                            code and defines it. What does not depend on x is evaluated once a row. */
+} hewn_flavour;
+
+/* Reads what it needs of the field, which may change or go afterwards. */
+hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
+                             hewn_error *error);
+void hewn_code_destroy(hewn_device *device, hewn_code **code);
+
+/* A kernel that calls the field. Its text is `head` (starts with #version and extensions; `common` below is appended by
+ * the callee), then the field's functions, then `body`. Its dispatches must pass hewn_code_uniforms(). */
+typedef struct hewn_kernel_desc {
+    const char *name;
+    const char *head;
+    const char *body;
+    uint32_t flavours; /* of hewn_flavour */
+    uint32_t push_bytes;
+} hewn_kernel_desc;
+
+hewn_result hewn_code_program(hewn_device *device, const hewn_code *code, const hewn_kernel_desc *desc,
+                              hewn_program **out, hewn_error *error);
+
+const hewn_buffer *hewn_code_uniforms(const hewn_code *code);
+
+/* Values, bounds and gradients in batches, for tests and queries. Points are float triples; boxes are six floats (lo x,
+ * y, z, hi x, y, z); intervals come back as (lo, hi), gradients as (value, d/dx, d/dy, d/dz). Any count. */
+hewn_result hewn_code_eval_points(hewn_device *device, const hewn_code *code, const float *points, size_t count,
+                                  float *values, hewn_error *error);
+hewn_result hewn_code_eval_boxes(hewn_device *device, const hewn_code *code, const float *boxes, size_t count,
+                                 float *intervals, hewn_error *error);
+hewn_result hewn_code_eval_gradients(hewn_device *device, const hewn_code *code, const float *points, size_t count,
+                                     float *values_and_gradients, hewn_error *error);
+
+#endif
