@@ -7,6 +7,7 @@
 #include "hewn/extract.h"
 #include "hewn/field.h"
 #include "hewn/io.h"
+#include "hewn/job.h"
 #include "hewn/scene.h"
 #include "hewn/triangles.h"
 

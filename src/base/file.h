@@ -12,13 +12,15 @@ hewn_result hewn_file_read(const char *path, size_t limit, char **bytes, size_t 
 /* A buffered output that becomes visible under its name only when finished. Not thread-safe. */
 typedef struct hewn_output hewn_output;
 
-/* Opens `path` for writing: a temporary file beside it, or standard output for "-". */
+/* Opens `path` for writing: a temporary file of an unpredictable name beside it, or standard output for "-". An
+ * existing file keeps its mode, a new one gets 0666 less the umask; a device or pipe is written in place. A folder, a
+ * missing or closed folder around it and a file that may not be written are HEWN_IO here, before any work. */
 hewn_result hewn_output_create(const char *path, hewn_output **out, hewn_error *error);
 
 /* Appends bytes. An error (a full disk) is returned at once and again by every later call. */
 hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t length, hewn_error *error);
 
-/* Flushes, syncs, renames over `path` and destroys the output; on failure nothing is left behind. */
+/* Flushes, renames over `path` and destroys the output; on failure nothing is left behind. */
 hewn_result hewn_output_finish(hewn_output **output, hewn_error *error);
 
 /* Gives up: removes the temporary file. On &NULL does nothing. */

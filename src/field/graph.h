@@ -50,10 +50,15 @@
     op(PLANE, plane, 3, 4)                         /* unit normal, distance */ \
     op(BLEND_QUADRATIC, blend_quadratic, 2, 1)     /* size */ \
     op(BLEND_CUBIC, blend_cubic, 2, 1)             /* size */ \
-    op(BLEND_CIRCULAR, blend_circular, 2, 1)       /* size */ \
+    op(BLEND_CIRCULAR, blend_circular, 2, 1)       /* size: the fillet's radius, and where |a-b| ends */ \
     op(BLEND_EXPONENTIAL, blend_exponential, 2, 1) /* k */
 /* clang-format on */
 
+/* The blends, with d = |a-b|, k the parameter; all are min(a, b) where not d < k, and never give NaN but for NaN:
+ *   quadratic    min(a, b) - h² / (4 k),   h = k - d
+ *   cubic        min(a, b) - h³ / (6 k²)
+ *   circular     min(a, b) - (k/2) (1 + t - sqrt(1 + t (2 - t))),   t = (k - d) / k
+ *   exponential  min(a, b) - ln(1 + e^(-k d)) / k,   for every d (d = 0 where a = b, also infinite) */
 typedef enum hewn_op {
 #define HEWN_OP_ENUMERATOR(NAME, name, operands, parameters) HEWN_OP_##NAME,
     HEWN_OPS(HEWN_OP_ENUMERATOR)

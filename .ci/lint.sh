@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# lint.sh BUILD-FOLDER: checks that need no running of Hewn. Every check runs; the last line is `1 passed, 0 failed` or
+# `0 passed, 1 failed`. lint.sh --sources: lists our C and C++ files.
+# shellcheck disable=SC2317  # run_check calls the checks by name
+set -euo pipefail
+cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.."
+
+# Files of the checkout: those in git and new ones that git does not ignore; without git, all but build folders.
+files() { # PATTERN...: names, one a line
+    local pattern tests=()
+    if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+        git ls-files --cached --others --exclude-standard -- "$@" | while IFS= read -r name; do
+            [ ! -f "$name" ] || printf '%s\n' "$name"
+        done
+        return
+    fi
+    for pattern in "$@"; do tests+=(-o -path "./$pattern"); done
+    find . -path './build*' -prune -o -path ./.git -prune -o -type f \( "${tests[@]:1}" \) -printf '%P\n'
+}
+
+sources() {
+    files '*.c' '*.h' '*.cpp' '*.hpp' | sort
+}
+
+check_format() {
+    sources | xargs -d '\n' clang-format --dry-run -Werror --
+}
+
+# Only files that the build compiles, each once, two or more at a time.
+check_tidy() {
+    python3 - "$1" <<'PY' | sort -u | xargs -r -d '\n' -n 1 -P "$(nproc)" clang-tidy --quiet -p "$1" \
+        --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-ignored-optimization-argument 2> >(grep -v \
+        -e 'warnings\? generated' -e '^Suppressed' -e '^Use -header-filter' >&2)
+import json, os, sys
+top = os.getcwd() + os.sep
+for entry in json.load(open(os.path.join(sys.argv[1], 'compile_commands.json'), encoding='utf-8')):
+    path = os.path.realpath(os.path.join(entry['directory'], entry['file']))
+    if path.startswith(top) and not path.startswith(os.path.realpath(sys.argv[1]) + os.sep):
+        print(os.path.relpath(path))
+PY
+}
+
+check_shell() {
+    files '*.sh' dev .ci/run | xargs -d '\n' shellcheck
+}
+
+check_python() {
+    files '*.py' | xargs -d '\n' -n 1 python3 -c \
+        'import ast, sys; ast.parse(open(sys.argv[1], encoding="utf-8").read(), sys.argv[1])'
+}
+
+text_files() {
+    files '*.c' '*.h' '*.cpp' '*.hpp' '*.comp' '*.glsl' '*.lua' '*.sh' '*.py' '*.md' '*.mjs' '*meson.build' dev .ci/run .ci/packages.txt
+}
+
+# Fails, showing the lines, where any file named on standard input matches.
+must_not_match() { # GREP-ARGUMENT...
+    ! { xargs -d '\n' grep -n "$@" -- || true; } | grep .
+}
+
+check_whitespace() {
+    text_files | must_not_match -E '[[:blank:]]+$|'$'\r'
+}
+
+check_newline() {
+    local name bad=0
+    while IFS= read -r name; do
+        [ -z "$(tail -c 1 -- "$name")" ] || { printf '%s: no newline at its end\n' "$name" && bad=1; }
+    done < <(text_files)
+    return "$bad"
+}
+
+check_length() {
+    text_files | xargs -d '\n' awk 'FNR == 801 { print FILENAME ": more than 800 lines"; bad = 1 } END { exit bad }'
+}
+
+check_unfinished() {
+    files 'src/*' 'include/*' 'shaders/*' | must_not_match -wE 'TODO|FIXME|XXX|HACK'
+}
+
+run_check() { # NAME FUNCTION [ARGUMENT...]
+    local name=$1 begin=$SECONDS
+    shift
+    if "$@"; then
+        printf 'lint: %-12s ok (%d s)\n' "$name" $((SECONDS - begin))
+    else
+        printf 'lint: %-12s FAILED\n' "$name"
+        failed=1
+    fi
+}
+
+if [ "${1:-}" = --sources ]; then
+    sources
+    exit
+fi
+failed=0
+run_check format check_format
+run_check clang-tidy check_tidy "${1:?usage: lint.sh BUILD-FOLDER}"
+run_check shellcheck check_shell
+run_check python check_python
+run_check whitespace check_whitespace
+run_check newline check_newline
+run_check length check_length
+run_check unfinished check_unfinished
+printf '%d passed, %d failed\n' $((1 - failed)) "$failed"
+exit "$failed"

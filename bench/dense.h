@@ -1,0 +1,19 @@
+/* The shipped scenes written by hand as dense sampling in C: what a careful programmer without Hewn would time. */
+#ifndef HEWN_BENCH_DENSE_H
+#define HEWN_BENCH_DENSE_H
+
+#include <stddef.h>
+
+typedef struct dense_field {
+    const char *name;
+    float lo, hi; /* the cube that is sampled */
+    /* Values of a row: x = x0 + i * step for i below count. */
+    void (*row)(float x0, float step, size_t count, float y, float z, float *values);
+} dense_field;
+
+extern const dense_field dense_csg, dense_gyroid, dense_menger4;
+
+/* Fills samples^3 values, x fastest, on all OpenMP threads. */
+void dense_sample(const dense_field *field, size_t samples, float *values);
+
+#endif

@@ -1,0 +1,199 @@
+/* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
+ * process. usage: extract [--runs N] [--res N] [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include "dense.h"
+#include "flying_edges.h"
+#include "hewn/hewn.h"
+
+#include "base/clock.h"
+
+#define MOST_RUNS 99
+#define THREADS 2
+
+typedef struct contest {
+    const char *name;
+    const char *file;
+    const hewn_scene_setting *settings;
+    size_t setting_count;
+    const dense_field *dense;
+} contest;
+
+static const hewn_scene_setting level_four[] = {{"L", 4}};
+
+static const contest contests[] = {
+    {"csg", "csg.lua", NULL, 0, &dense_csg},
+    {"gyroid", "gyroid.lua", NULL, 0, &dense_gyroid},
+    {"menger", "menger.lua", level_four, 1, &dense_menger4},
+};
+
+typedef struct outcome {
+    double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];
+    double stage[4];
+    uint64_t hewn_triangles, peer_triangles;
+} outcome;
+
+static void stop_on(hewn_result result, const hewn_error *error)
+{
+    if (result == HEWN_OK)
+        return;
+    fprintf(stderr, "bench: %s: %s\n", error->file, error->message);
+    exit(1);
+}
+
+static int by_value(const void *a, const void *b)
+{
+    double left = *(const double *)a, right = *(const double *)b;
+    return (left > right) - (left < right);
+}
+
+static double median(const double *values, int count)
+{
+    double sorted[MOST_RUNS];
+    memcpy(sorted, values, (size_t)count * sizeof *sorted);
+    qsort(sorted, (size_t)count, sizeof *sorted, by_value);
+    return count % 2 ? sorted[count / 2] : 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);
+}
+
+static void run_hewn(hewn_extractor *extractor, const hewn_box *bounds, uint32_t resolution, double *seconds,
+                     outcome *out)
+{
+    hewn_error error = {0};
+    hewn_extract_desc desc = {.bounds = *bounds, .resolution = resolution};
+    hewn_triangles triangles;
+    hewn_extract_stats stats;
+    double begin = hewn_clock_now();
+    stop_on(hewn_extract(extractor, &desc, &triangles, &stats, &error), &error);
+    *seconds = hewn_clock_now() - begin;
+    out->hewn_triangles = triangles.triangle_count;
+    for (uint32_t i = 0; i < stats.stage_count && i < 4; i++)
+        out->stage[i] = stats.stages[i].end - stats.stages[i].begin;
+    hewn_triangles_destroy(&triangles);
+}
+
+static void run_peers(const dense_field *field, uint32_t resolution, float *values, double *sampling, double *meshing,
+                      outcome *out)
+{
+    size_t samples = (size_t)resolution + 1;
+    double begin = hewn_clock_now();
+    dense_sample(field, samples, values);
+    *sampling = hewn_clock_now() - begin;
+    uint64_t vertices;
+    double step = (double)(field->hi - field->lo) / resolution;
+    *meshing = flying_edges_run(values, samples, (double)field->lo, step, THREADS, &vertices, &out->peer_triangles);
+}
+
+static void run_contest(hewn_device *device, const contest *entry, const char *folder, uint32_t resolution, int runs,
+                        outcome *out)
+{
+    char path[4096];
+    hewn_error error = {0};
+    hewn_scene *scene;
+    hewn_extractor *extractor;
+    hewn_box bounds;
+    snprintf(path, sizeof path, "%s/%s", folder, entry->file);
+    hewn_scene_desc desc = {.path = path, .settings = entry->settings, .setting_count = entry->setting_count};
+    stop_on(hewn_scene_load(&desc, &scene, &error), &error);
+    if (!hewn_scene_bounds(scene, &bounds))
+        stop_on(hewn_field_find_box(hewn_scene_field(scene), hewn_field_root(hewn_scene_field(scene)), &bounds, &error),
+                &error);
+    stop_on(hewn_extractor_create(device, hewn_scene_field(scene), hewn_field_root(hewn_scene_field(scene)), &extractor,
+                                  &error),
+            &error);
+    size_t samples = (size_t)resolution + 1;
+    float *values = malloc(samples * samples * samples * sizeof *values);
+    if (!values)
+        exit(1);
+    double unused[2];
+    run_hewn(extractor, &bounds, resolution, unused, out);
+    run_peers(entry->dense, resolution, values, unused, unused + 1, out);
+    for (int i = 0; i < runs; i++) {
+        run_hewn(extractor, &bounds, resolution, &out->hewn[i], out);
+        run_peers(entry->dense, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
+    }
+    free(values);
+    hewn_extractor_destroy(&extractor);
+    hewn_scene_destroy(&scene);
+}
+
+static double paired_ratio(const outcome *result, int runs)
+{
+    double ratios[MOST_RUNS];
+    for (int i = 0; i < runs; i++)
+        ratios[i] = (result->sampling[i] + result->flying_edges[i]) / result->hewn[i];
+    return median(ratios, runs);
+}
+
+static void print_outcome(FILE *json, const contest *entry, uint32_t resolution, const outcome *result, int runs,
+                          bool first)
+{
+    double ours = median(result->hewn, runs), sampling = median(result->sampling, runs);
+    double meshing = median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
+    printf("%-8s %5u  %8.3f  %8.3f + %-7.3f  %5.2fx   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, read back "
+           "%.3f\n",
+           entry->name, resolution, ours, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles,
+           (unsigned long long)result->peer_triangles, result->stage[0], result->stage[1], result->stage[2],
+           result->stage[3]);
+    if (json)
+        fprintf(json,
+                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"runs\": %d, \"hewn_seconds\": %.4f, "
+                "\"sampling_seconds\": %.4f, "
+                "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"triangles\": %llu}",
+                first ? "" : ",", entry->name, resolution, runs, ours, sampling, meshing, ratio,
+                (unsigned long long)result->hewn_triangles);
+}
+
+static bool wanted(const contest *entry, int argc, char **argv, int from)
+{
+    for (int i = from; i < argc; i++)
+        if (strcmp(argv[i], entry->name) == 0)
+            return true;
+    return from >= argc;
+}
+
+int main(int argc, char **argv)
+{
+    const char *folder = getenv("HEWN_SCENES");
+    int runs = 5, at = 1;
+    uint32_t resolution = 512;
+    FILE *json = NULL;
+    for (; at + 1 < argc && strncmp(argv[at], "--", 2) == 0; at += 2) {
+        if (strcmp(argv[at], "--runs") == 0)
+            runs = atoi(argv[at + 1]);
+        else if (strcmp(argv[at], "--res") == 0)
+            resolution = (uint32_t)atoi(argv[at + 1]);
+        else if (strcmp(argv[at], "--json") == 0)
+            json = fopen(argv[at + 1], "w");
+    }
+    runs = runs < 1 ? 1 : runs > MOST_RUNS ? MOST_RUNS : runs;
+    hewn_error error = {0};
+    hewn_device *device;
+    stop_on(hewn_device_create(NULL, &device, &error), &error);
+    printf(
+        "device %s; dense sampling in C and VTK flying edges (%s) on %d threads; medians of %d runs in turn, seconds\n",
+        hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
+    printf("%-8s %5s  %8s  %18s  %6s   %9s %9s\n", "scene", "cells", "Hewn", "sampling + VTK", "ratio", "triangles",
+           "VTK's");
+    if (json)
+        fprintf(json, "[");
+    bool first = true;
+    for (size_t i = 0; i < sizeof contests / sizeof *contests; i++) {
+        if (!wanted(&contests[i], argc, argv, at))
+            continue;
+        outcome result = {0};
+        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, &result);
+        print_outcome(json, &contests[i], resolution, &result, runs, first);
+        first = false;
+        fflush(stdout);
+    }
+    if (json) {
+        fprintf(json, "\n]\n");
+        fclose(json);
+    }
+    hewn_device_destroy(&device);
+    return 0;
+}

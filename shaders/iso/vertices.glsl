@@ -1,0 +1,109 @@
+/* Solves each crossing on the field itself, and takes its normal from the exact gradient there: one invocation a vertex. */
+#include "iso/grid.h"
+
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push
+{
+    hewn_vertex_push push;
+};
+
+/* No vertex comes nearer to a grid point than this share of a cell, so that no two of them fall together. */
+const float NEAREST = 1.25 / 4096.0;
+const uint MOST_TRIALS = 24u;
+
+float sample_x(uint i)
+{
+    return sample_coordinate(push.grid, 0u, i);
+}
+
+float value_along(vec3 start, uint axis, float side, float t)
+{
+    precise vec3 at = start;
+    at[axis] = start[axis] + side * t;
+    return field_point(at.x, at.y, at.z);
+}
+
+bool finite(float value)
+{
+    return abs(value) <= 3.0e38;
+}
+
+/* Where the field changes sign along the edge, as a share of it. False position with the Illinois weight, halving where the values
+ * give no better guess; the bracket always holds an inside end and an outside end. */
+float crossing(vec3 start, uint axis, float side, float at_start, float at_end)
+{
+    float a = 0.0, b = 1.0, fa = at_start, fb = at_end, guess = 0.5;
+    bool start_inside = at_start < 0.0;
+    int kept = 0;
+    for (uint trial = 0u; trial < MOST_TRIALS; trial++) {
+        float slope = fb - fa;
+        float next = a - fa * (b - a) / slope;
+        if (!(finite(slope) && next > a && next < b) || trial > 8u)
+            next = 0.5 * (a + b);
+        float moved = abs(next - guess);
+        guess = next;
+        float value = value_along(start, axis, side, next);
+        if (value == 0.0 || (moved < 1.0e-4 && trial > 0u) || b - a < 2.0e-6)
+            break;
+        if ((value < 0.0) == start_inside) {
+            a = next;
+            fa = value;
+            fb = kept == 1 ? 0.5 * fb : fb;
+            kept = 1;
+        } else {
+            b = next;
+            fb = value;
+            fa = kept == 2 ? 0.5 * fa : fa;
+            kept = 2;
+        }
+    }
+    return guess;
+}
+
+void write_vertex(uint vertex, vec3 at, vec3 normal)
+{
+    for (uint i = 0u; i < 3u; i++) {
+        push.positions.at[3u * vertex + i] = at[i];
+        push.normals.at[3u * vertex + i] = normal[i];
+    }
+}
+
+void main()
+{
+    uint vertex = invocation();
+    if (vertex >= push.count)
+        return;
+    uint slot = floatBitsToUint(push.positions.at[3u * vertex]);
+    uint record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
+    uint axis = record >> 9;
+    uvec3 first = 8u * unpack_brick(push.bricks.at[slot]) + (uvec3(record, record >> 3, record >> 6) & 7u);
+    vec3 start;
+    for (uint i = 0u; i < 3u; i++)
+        start[i] = sample_coordinate(push.grid, i, first[i]);
+    float end = sample_coordinate(push.grid, axis, first[axis] + 1u);
+    precise float side = end - start[axis];
+    float at_start = value_along(start, axis, side, 0.0);
+    precise vec3 last = start;
+    last[axis] = end;
+    float at_end = field_point(last.x, last.y, last.z);
+    bool capped = push.grid.open == 0u;
+    bool cap_start = capped && first[axis] == 0u && at_start < 0.0;
+    bool cap_end = capped && first[axis] + 1u == push.grid.cells[axis] && at_end < 0.0;
+    vec3 outward = vec3(0.0);
+    outward[axis] = cap_start || (!cap_end && at_end < 0.0) ? -1.0 : 1.0;
+    if (cap_start || cap_end) {
+        write_vertex(vertex, cap_start ? start : last, outward);
+        atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], 1u);
+        return;
+    }
+    float t = clamp(crossing(start, axis, side, at_start, at_end), NEAREST, 1.0 - NEAREST);
+    precise vec3 at = start;
+    at[axis] = start[axis] + side * t;
+    vec4 gradient = field_gradient(at.x, at.y, at.z);
+    float size = length(gradient.xyz);
+    bool sloped = finite(size) && size > 0.0;
+    write_vertex(vertex, at, sloped ? gradient.xyz / size : outward);
+    float residual = abs(gradient.w) / (size * push.grid.cell);
+    if (sloped && finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
+        atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
+}

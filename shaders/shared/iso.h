@@ -1,0 +1,128 @@
+/* The layout that the extraction's kernels and their host share.
+ *
+ * A grid has cells[a] cells and cells[a] + 1 samples along axis a. A brick owns 8 x 8 x 8 samples, the cells above them and the edges that
+ * leave them upward. A sample in a brick is numbered x + 8 y + 64 z; word w of a brick's 16 sign words holds samples 32 w to 32 w + 31.
+ * A brick's coordinates are packed ten bits an axis. A slot is a brick's place in the list of active bricks. */
+#ifndef HEWN_SHADERS_SHARED_ISO_H
+#define HEWN_SHADERS_SHARED_ISO_H
+
+#include "shared/types.h"
+
+#define HEWN_BRICK_WORDS 16u
+#define HEWN_BRICK_EDGE_WORDS 48u
+#define HEWN_BRICK_LINKS 8u
+#define HEWN_LEVEL_RATIO 4u
+#define HEWN_MAX_LEVELS 5u
+
+/* Stand-ins for a slot where a brick holds no surface. */
+#define HEWN_ALL_OUTSIDE 0xFFFFFFFEu
+#define HEWN_ALL_INSIDE 0xFFFFFFFFu
+
+/* Sample i along axis a is at origin[a] + cell * i, but the last one is at far[a] exactly. */
+struct hewn_grid {
+    float origin[3];
+    float far[3];
+    float cell;
+    HEWN_UINT cells[3];
+    HEWN_UINT open; /* 1: samples on the bounds are what the field says; 0: they are outside */
+};
+
+#ifdef GL_core_profile
+#define HEWN_GRID hewn_grid
+#else
+#define HEWN_GRID struct hewn_grid
+#endif
+
+/* One level of culling: blocks of `size` cells, the children of the blocks that the level above kept. */
+struct hewn_cull_push {
+    HEWN_GRID grid;
+    HEWN_UINT size;
+    HEWN_UINT dense[3]; /* the top level tests all of these blocks; elsewhere 0 */
+    HEWN_UINTS parents; /* packed coordinates */
+    HEWN_UINTS tested;  /* how many blocks there are to test */
+    HEWN_UINTS states;  /* out, a block tested: a stand-in, or 0 where it is kept */
+    HEWN_UINTS flags;   /* out, a block tested: 1 where it is kept */
+};
+
+/* Turns kept blocks into the list for the next level. */
+struct hewn_compact_push {
+    HEWN_UINT dense[3];
+    HEWN_UINT pad;
+    HEWN_UINTS parents;
+    HEWN_UINTS states;  /* in: as above; out: the block's place in the list where it is kept */
+    HEWN_UINTS ranks;   /* the flags, summed */
+    HEWN_UINTS control; /* see below */
+    HEWN_UINTS kept;    /* out: packed coordinates */
+};
+
+/* What the device knows of a level: 32-bit words at these places. The levels' words follow each other, so a level also writes the
+ * next one's. */
+#define HEWN_CONTROL_TESTED 0u   /* blocks tested at this level */
+#define HEWN_CONTROL_KEPT 2u     /* two words: blocks kept */
+#define HEWN_CONTROL_DISPATCH 4u /* three words: workgroups that test this level */
+#define HEWN_CONTROL_WORDS 8u
+
+struct hewn_link_push {
+    HEWN_UINT top[3]; /* blocks of the top level */
+    HEWN_UINT levels;
+    HEWN_UINT count; /* active bricks */
+    HEWN_UINT pad;
+    HEWN_UINTS bricks; /* packed coordinates of the active bricks */
+    HEWN_UINTS links;  /* out, eight a brick: slot of the neighbour at offset (k & 1, k >> 1 & 1, k >> 2 & 1), or a stand-in */
+    HEWN_UINTS states[HEWN_MAX_LEVELS]; /* coarsest first */
+};
+
+struct hewn_sign_push {
+    HEWN_GRID grid;
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS signs; /* out: 16 words a brick */
+};
+
+struct hewn_classify_push {
+    HEWN_UINT cells[3];
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS signs;
+    HEWN_UINTS edges;     /* out: the masks of 48 pairs a brick, pair 16 * axis + word: which edges cross, number of the first's vertex */
+    HEWN_UINTS vertex_counts;   /* out, a brick */
+    HEWN_UINTS triangle_counts; /* out, a brick */
+};
+
+/* Spreads the work out: one record a vertex and one a triangle, parked where the results will go. */
+struct hewn_spread_push {
+    HEWN_UINT cells[3];
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS signs;
+    HEWN_UINTS edges; /* in: the masks; out: the numbers of vertices */
+    HEWN_UINTS vertex_bases;
+    HEWN_UINTS triangle_bases;
+    HEWN_UINTS vertices; /* out: slot and 512 * axis + sample in the first two words of each position */
+    HEWN_UINTS indices;  /* out: slot and sample + 512 * pattern + 131072 * triangle in the first two words of each triangle */
+};
+
+struct hewn_vertex_push {
+    HEWN_GRID grid;
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_FLOATS positions; /* in: records; out: positions */
+    HEWN_FLOATS normals;   /* out */
+    HEWN_UINTS summary;    /* HEWN_SUMMARY_WORDS */
+};
+
+#define HEWN_SUMMARY_RESIDUAL 0u /* bits of the largest |f| / |grad f| in cells */
+#define HEWN_SUMMARY_CAPS 1u     /* vertices on the bounds because the surface was cut there */
+#define HEWN_SUMMARY_WORDS 2u
+
+struct hewn_triangle_push {
+    HEWN_UINT count;
+    HEWN_UINT pad;
+    HEWN_UINTS links;
+    HEWN_UINTS edges;
+    HEWN_UINTS indices; /* in: records; out: indices */
+};
+
+#endif

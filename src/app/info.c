@@ -1,0 +1,290 @@
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/scene_arguments.h"
+#include "base/error.h"
+#include "base/json.h"
+
+static const hewn_option options[] = {
+    {0, "json", NULL, "Print JSON."},
+    {'D', NULL, "NAME=VALUE", "Set a parameter of the scene. May be repeated."},
+    {0, "from", "FORMAT",
+     "Read the file as a scene in lua or vm. Default: by its extension; needed where FILE is `-`."},
+    {0, "allow-path", NULL, "Let the scene read files outside its own folder."},
+    {'h', "help", NULL, "Print this help."},
+};
+
+/* What is told of a scene's bounds. */
+typedef struct found_bounds {
+    bool known;
+    hewn_box box;
+    const char *from; /* "scene" or "field"; NULL where there are none */
+    hewn_error reason;
+} found_bounds;
+
+static hewn_result find_bounds(const hewn_scene *scene, found_bounds *out, hewn_error *error)
+{
+    *out = (found_bounds){0};
+    if (hewn_scene_bounds(scene, &out->box)) {
+        out->known = true;
+        out->from = "scene";
+        return HEWN_OK;
+    }
+    const hewn_field *field = hewn_scene_field(scene);
+    hewn_result result = hewn_field_find_box(field, hewn_field_root(field), &out->box, &out->reason);
+    out->known = result == HEWN_OK;
+    out->from = out->known ? "field" : NULL;
+    if (result == HEWN_OK || result == HEWN_BAD_INPUT)
+        return HEWN_OK;
+    *error = out->reason;
+    return result;
+}
+
+static const char *axis_name(hewn_axis axis)
+{
+    switch (axis) {
+    case HEWN_AXIS_PLUS_Y: return "+Y";
+    case HEWN_AXIS_PLUS_Z: return "+Z";
+    case HEWN_AXIS_PLUS_X: return "+X";
+    }
+    return "?";
+}
+
+static size_t node_count(const hewn_scene *scene)
+{
+    const hewn_field *field = hewn_scene_field(scene);
+    return hewn_field_size(field, hewn_field_root(field));
+}
+
+/* --- text -------------------------------------------------------------------------------------------------------- */
+
+static void print_box(const hewn_box *box)
+{
+    printf("%g,%g,%g to %g,%g,%g", box->lo[0], box->lo[1], box->lo[2], box->hi[0], box->hi[1], box->hi[2]);
+}
+
+static void print_range(const hewn_scene_parameter *parameter)
+{
+    char range[80];
+    if (isfinite(parameter->lo) && isfinite(parameter->hi))
+        snprintf(range, sizeof range, "%g to %g", parameter->lo, parameter->hi);
+    else if (isfinite(parameter->lo))
+        snprintf(range, sizeof range, "from %g", parameter->lo);
+    else if (isfinite(parameter->hi))
+        snprintf(range, sizeof range, "to %g", parameter->hi);
+    else
+        snprintf(range, sizeof range, "any");
+    printf("  %-16s", range);
+    printf("%-6s", parameter->integer ? "whole" : "");
+}
+
+static void print_parameters(const hewn_scene *scene)
+{
+    size_t count = hewn_scene_parameter_count(scene);
+    if (count == 0) {
+        printf("parameters  none\n");
+        return;
+    }
+    int width = 4;
+    for (size_t i = 0; i < count; ++i) {
+        int length = (int)strlen(hewn_scene_parameter_at(scene, i)->name);
+        width = length > width ? length : width;
+    }
+    printf("parameters\n  %-*s  %-10s  %-10s  %-22s  %s\n", width, "name", "value", "default", "range", "help");
+    for (size_t i = 0; i < count; ++i) {
+        const hewn_scene_parameter *parameter = hewn_scene_parameter_at(scene, i);
+        printf("  %-*s  %-10g  %-10g", width, parameter->name, parameter->value, parameter->initial);
+        print_range(parameter);
+        printf("  %s\n", parameter->help ? parameter->help : "");
+    }
+}
+
+static void print_scene(const char *path, const hewn_scene *scene, const found_bounds *bounds)
+{
+    printf("%s: scene\n", strcmp(path, "-") == 0 ? "standard input" : path);
+    printf("nodes       %zu\n", node_count(scene));
+    printf("units       %s (%g m)\n", hewn_scene_units(scene), hewn_scene_metres_per_unit(scene));
+    printf("up          %s\n", axis_name(hewn_scene_up(scene)));
+    printf("bounds      ");
+    if (bounds->known) {
+        print_box(&bounds->box);
+        printf(" (%s)\n", strcmp(bounds->from, "scene") == 0 ? "given by the scene" : "found from the field");
+    } else {
+        printf("none: %s\n", bounds->reason.message);
+    }
+    for (size_t i = 0; i < hewn_scene_file_count(scene); ++i)
+        printf("%-10s  %s\n", i == 0 ? "files" : "", hewn_scene_file(scene, i));
+    print_parameters(scene);
+}
+
+static const char *yes(bool value)
+{
+    return value ? "yes" : "no";
+}
+
+static void print_mesh(const hewn_report *report)
+{
+    const hewn_certificate *certificate = &report->certificate;
+    printf("%s: mesh\n", report->input);
+    printf("vertices               %llu\n", (unsigned long long)report->vertices);
+    printf("faces                  %llu\n", (unsigned long long)report->faces);
+    printf("closed                 %s\n", yes(certificate->closed));
+    printf("manifold               %s\n", yes(certificate->manifold));
+    printf("oriented               %s\n", yes(certificate->oriented));
+    printf("components             %llu\n", (unsigned long long)certificate->components);
+    if (certificate->genus >= 0)
+        printf("genus                  %lld\n", (long long)certificate->genus);
+    if (certificate->closed && certificate->oriented)
+        printf("volume                 %.9g\n", certificate->volume);
+    printf("area                   %.9g\n", certificate->area);
+    printf("bounds                 ");
+    print_box(&certificate->bounds);
+    printf("\nboundary edges         %llu\n", (unsigned long long)certificate->boundary_edges);
+    printf("non-manifold edges     %llu\n", (unsigned long long)certificate->non_manifold_edges);
+    printf("non-manifold vertices  %llu\n", (unsigned long long)certificate->non_manifold_vertices);
+    printf("degenerate faces       %llu\n", (unsigned long long)certificate->degenerate_faces);
+}
+
+/* --- JSON -------------------------------------------------------------------------------------------------------- */
+
+static void json_vector(hewn_json *json, const char *key, const double vector[3])
+{
+    hewn_json_array(json, key);
+    for (int axis = 0; axis < 3; ++axis)
+        hewn_json_number(json, NULL, vector[axis]);
+    hewn_json_end_array(json);
+}
+
+static void json_parameter(hewn_json *json, const hewn_scene_parameter *parameter)
+{
+    hewn_json_object(json, NULL);
+    hewn_json_string(json, "name", parameter->name);
+    hewn_json_string(json, "help", parameter->help);
+    hewn_json_number(json, "value", parameter->value);
+    hewn_json_number(json, "default", parameter->initial);
+    hewn_json_array(json, "range");
+    hewn_json_number(json, NULL, parameter->lo);
+    hewn_json_number(json, NULL, parameter->hi);
+    hewn_json_end_array(json);
+    hewn_json_bool(json, "integer", parameter->integer);
+    hewn_json_end_object(json);
+}
+
+static void json_bounds(hewn_json *json, const found_bounds *bounds)
+{
+    if (bounds->known) {
+        hewn_json_object(json, "bounds");
+        json_vector(json, "lo", bounds->box.lo);
+        json_vector(json, "hi", bounds->box.hi);
+        hewn_json_end_object(json);
+    } else {
+        hewn_json_string(json, "bounds", NULL);
+    }
+    hewn_json_string(json, "bounds_from", bounds->from);
+}
+
+static hewn_result print_scene_json(const char *path, const hewn_scene *scene, const found_bounds *bounds,
+                                    hewn_error *error)
+{
+    hewn_text text = {0};
+    hewn_json json = hewn_json_begin(&text);
+    hewn_json_object(&json, NULL);
+    hewn_json_string(&json, "version", hewn_version());
+    hewn_json_string(&json, "input", path);
+    hewn_json_array(&json, "files");
+    for (size_t i = 0; i < hewn_scene_file_count(scene); ++i)
+        hewn_json_string(&json, NULL, hewn_scene_file(scene, i));
+    hewn_json_end_array(&json);
+    hewn_json_unsigned(&json, "nodes", node_count(scene));
+    hewn_json_string(&json, "units", hewn_scene_units(scene));
+    hewn_json_number(&json, "metres_per_unit", hewn_scene_metres_per_unit(scene));
+    hewn_json_string(&json, "up", axis_name(hewn_scene_up(scene)));
+    json_bounds(&json, bounds);
+    hewn_json_array(&json, "parameters");
+    for (size_t i = 0; i < hewn_scene_parameter_count(scene); ++i)
+        json_parameter(&json, hewn_scene_parameter_at(scene, i));
+    hewn_json_end_array(&json);
+    hewn_json_end_object(&json);
+    hewn_result result = hewn_text_status(&text, error);
+    if (result == HEWN_OK)
+        fwrite(text.bytes, 1, text.length, stdout);
+    hewn_text_clear(&text);
+    return result;
+}
+
+/* --- the command ------------------------------------------------------------------------------------------------- */
+
+static hewn_result tell_scene(const hewn_scene_desc *desc, bool json, hewn_error *error)
+{
+    hewn_scene *scene = NULL;
+    hewn_result result = hewn_scene_load(desc, &scene, error);
+    if (result == HEWN_IO) /* an input that cannot be read is a bad one */
+        result = error->code = HEWN_BAD_INPUT;
+    if (result != HEWN_OK)
+        return result;
+    found_bounds bounds;
+    result = find_bounds(scene, &bounds, error);
+    if (result == HEWN_OK && json)
+        result = print_scene_json(desc->path, scene, &bounds, error);
+    else if (result == HEWN_OK)
+        print_scene(desc->path, scene, &bounds);
+    hewn_scene_destroy(&scene);
+    return result;
+}
+
+static hewn_result tell_mesh(const char *path, bool json, hewn_error *error)
+{
+    hewn_signals_catch();
+    hewn_progress progress = hewn_progress_begin(false);
+    hewn_report report;
+    hewn_result result = hewn_mesh_examine(path, &progress, &report, error);
+    hewn_progress_end();
+    if (result != HEWN_OK)
+        return result;
+    if (json)
+        result = hewn_report_write(&report, "-", error);
+    else
+        print_mesh(&report);
+    hewn_report_destroy(&report);
+    return result;
+}
+
+static int run(const hewn_command *command, const hewn_arguments *arguments)
+{
+    hewn_error error = {0};
+    hewn_scene_arguments scene;
+    hewn_result result = hewn_scene_arguments_read(arguments, &scene, &error);
+    bool json = hewn_arguments_has(arguments, "json");
+    bool mesh = result == HEWN_OK && scene.desc.format == HEWN_SCENE_BY_NAME &&
+                hewn_mesh_format_of(scene.desc.path) != HEWN_MESH_UNKNOWN;
+    if (mesh && scene.count > 0)
+        result = hewn_fail(&error, HEWN_INVALID_ARGUMENT, "-D sets a parameter of a scene, but %s is a mesh",
+                           scene.desc.path);
+    int code = 0;
+    if (result != HEWN_OK) {
+        code = hewn_report_misuse(command, &error);
+    } else {
+        result = mesh ? tell_mesh(scene.desc.path, json, &error) : tell_scene(&scene.desc, json, &error);
+        if (result != HEWN_OK)
+            code = hewn_report_failure(&error);
+    }
+    hewn_scene_arguments_destroy(&scene);
+    return code;
+}
+
+const hewn_command hewn_command_info = {
+    .name = "info",
+    .summary = "tell what is in a scene or a mesh file",
+    .usage = "FILE [OPTION]...",
+    .about = "Of a scene (.lua, .vm): its parameters with default, value, range and help, its\n"
+             "bounds, units, up axis, files and the size of its field. Of a mesh (.glb, .obj,\n"
+             ".ply, .stl): its counts and its certificate. Needs no device.\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .after = "Examples:\n"
+             "  hewn info assets/scenes/menger.lua\n"
+             "  hewn info bracket.glb --json\n",
+    .run = run,
+};

@@ -1,0 +1,245 @@
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "app/app.h"
+#include "app/number.h"
+#include "app/scene_arguments.h"
+#include "base/error.h"
+
+static const hewn_option options[] = {
+    {'o', "output", "FILE",
+     "Write the mesh to FILE; its extension (.glb, .obj, .ply, .stl) names the format. `-` is standard output, with "
+     "--to. Required."},
+    {0, "res", "N", "Use N cells on the longest side of the bounds. Default: 128."},
+    {0, "cell", "H", "Use cells of side H, in the scene's units, instead of --res."},
+    {0, "method", "NAME", "Extract the surface by this method: mc (marching cubes). Default: mc."},
+    {0, "bounds", "BOX",
+     "Look for the surface in BOX = x0,y0,z0,x1,y1,z1. Default: the scene's own bounds, else found from the field."},
+    {0, "open", NULL, "Leave the surface open where it leaves the bounds. Default: close it there with a flat cap."},
+    {'D', NULL, "NAME=VALUE", "Set a parameter of the scene; `hewn info SCENE` lists them. May be repeated."},
+    {0, "from", "FORMAT", "Read the scene as lua or vm. Default: by its extension; needed where SCENE is `-`."},
+    {0, "to", "FORMAT", "Write the mesh as glb, obj, ply or stl. Default: by the output's extension."},
+    {0, "allow-path", NULL, "Let the scene read files outside its own folder."},
+    {0, "device", "DEVICE",
+     "Compute on this device, an index or a part of a name as `hewn devices` lists them. Default: $HEWN_DEVICE, else "
+     "the best."},
+    {0, "threads", "N", "Use N threads. Default: one for each processor."},
+    {0, "report", "FILE", "Write a report as JSON to FILE; `-` is standard output (not together with -o -)."},
+    {'q', "quiet", NULL, "Print errors only: no progress, no summary."},
+    {0, "watch", NULL, "Mesh again whenever the scene or a file that it imports changes, until Ctrl-C."},
+    {'h', "help", NULL, "Print this help."},
+};
+
+/* The command line as a job. */
+typedef struct mesh_request {
+    hewn_mesh_job_desc desc;
+    hewn_scene_arguments scene;
+    hewn_box bounds;
+    bool quiet;
+    bool watch;
+} mesh_request;
+
+static bool is_dash(const char *path)
+{
+    return strcmp(path, "-") == 0;
+}
+
+static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
+{
+    const char *resolution = hewn_arguments_value(arguments, "res");
+    const char *cell = hewn_arguments_value(arguments, "cell");
+    const char *bounds = hewn_arguments_value(arguments, "bounds");
+    const char *method = hewn_arguments_value(arguments, "method");
+    if (resolution && cell)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--res and --cell exclude each other");
+    if (resolution)
+        HEWN_TRY(hewn_count_parse(resolution, "--res", 1, &request->desc.resolution, error));
+    if (cell) {
+        HEWN_TRY(hewn_number_parse(cell, "--cell", &request->desc.cell, error));
+        if (!(request->desc.cell > 0))
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--cell must be greater than 0, not %s", cell);
+    }
+    if (bounds) {
+        HEWN_TRY(hewn_bounds_parse(bounds, "--bounds", &request->bounds, error));
+        request->desc.bounds = &request->bounds;
+    }
+    if (method && strcmp(method, "mc") != 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method is mc, not '%s'", method);
+    return HEWN_OK;
+}
+
+static hewn_result read_output(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
+{
+    hewn_mesh_job_desc *desc = &request->desc;
+    desc->output = hewn_arguments_value(arguments, "output");
+    desc->report = hewn_arguments_value(arguments, "report");
+    if (!desc->output)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "where should the mesh go? Give -o FILE");
+    if (!desc->output[0] || (desc->report && !desc->report[0]))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
+    const char *format = hewn_arguments_value(arguments, "to");
+    if (format) {
+        desc->format = hewn_mesh_format_of(format);
+        if (desc->format == HEWN_MESH_UNKNOWN)
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--to is glb, obj, ply or stl, not '%s'", format);
+    }
+    bool binary = desc->format == HEWN_MESH_PLY || desc->format == HEWN_MESH_STL;
+    if (is_dash(desc->output) && binary && isatty(STDOUT_FILENO))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "standard output is a terminal, and %s is binary; send it to a file or a pipe", format);
+    request->quiet = hewn_arguments_has(arguments, "quiet");
+    request->watch = hewn_arguments_has(arguments, "watch");
+    if (request->watch && (is_dash(desc->output) || is_dash(desc->scene.path)))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--watch needs files, not standard input or output");
+    return HEWN_OK;
+}
+
+static hewn_result read_device(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
+{
+    const char *threads = hewn_arguments_value(arguments, "threads");
+    const char *validation = getenv("HEWN_VALIDATION");
+    request->desc.device = hewn_arguments_value(arguments, "device");
+    request->desc.validation = validation && validation[0] && strcmp(validation, "0") != 0;
+    if (!threads)
+        return HEWN_OK;
+    HEWN_TRY(hewn_count_parse(threads, "--threads", 1, &request->desc.threads, error));
+    if (request->desc.threads > 4096)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--threads is at most 4096, not %s", threads);
+    return HEWN_OK;
+}
+
+static hewn_result read_request(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
+{
+    HEWN_TRY(hewn_scene_arguments_read(arguments, &request->scene, error));
+    request->desc.scene = request->scene.desc;
+    HEWN_TRY(read_grid(arguments, request, error));
+    HEWN_TRY(read_output(arguments, request, error));
+    return read_device(arguments, request, error);
+}
+
+/* --- what people see --------------------------------------------------------------------------------------------- */
+
+/* " m³" for metres; nothing for a scene whose units have no name. */
+static void print_measure(const char *name, double value, const char *units, const char *power)
+{
+    fprintf(stderr, "%s %.6g%s%s%s", name, value, units[0] ? " " : "", units, units[0] ? power : "");
+}
+
+static void print_summary(const hewn_report *report)
+{
+    const hewn_certificate *certificate = &report->certificate;
+    fprintf(stderr, "%s: %llu vertices, %llu faces; %s, manifold, oriented; %llu component%s",
+            is_dash(report->output) ? "standard output" : report->output, (unsigned long long)report->vertices,
+            (unsigned long long)report->faces, certificate->closed ? "closed" : "open",
+            (unsigned long long)certificate->components, certificate->components == 1 ? "" : "s");
+    if (certificate->genus >= 0)
+        fprintf(stderr, ", genus %lld", (long long)certificate->genus);
+    fputs("\n  ", stderr);
+    if (certificate->closed) {
+        print_measure("volume", certificate->volume, report->units, "³");
+        fputs(", ", stderr);
+    }
+    print_measure("area", certificate->area, report->units, "²");
+    if (certificate->max_residual == certificate->max_residual)
+        fprintf(stderr, ", vertices within %.2g of a cell of the surface", certificate->max_residual);
+    const hewn_extract_stats *grid = &report->extraction;
+    fprintf(stderr, "\n  %llu x %llu x %llu cells of %.6g%s%s, %.2f s on %s\n", (unsigned long long)grid->cells[0],
+            (unsigned long long)grid->cells[1], (unsigned long long)grid->cells[2], grid->cell,
+            report->units[0] ? " " : "", report->units, report->seconds, report->device.name);
+    if (grid->left_bounds)
+        fprintf(stderr, "hewn: note: the surface reaches the bounds and was %s there; wider --bounds keep it whole\n",
+                report->open ? "left open" : "closed with a flat cap");
+}
+
+/* --- running ----------------------------------------------------------------------------------------------------- */
+
+/* Meshes once. Where `watch` is not NULL it learns of every file that was read. */
+static hewn_result mesh_once(const mesh_request *request, double began, hewn_watch *watch, hewn_error *error)
+{
+    hewn_progress progress = hewn_progress_begin(request->quiet);
+    hewn_mesh_job_desc desc = request->desc;
+    desc.progress = &progress;
+    desc.began = began;
+    hewn_report report;
+    hewn_result result = hewn_mesh_scene(&desc, &report, error);
+    hewn_progress_end();
+    if (result == HEWN_OK && !request->quiet)
+        print_summary(&report);
+    if (result == HEWN_OK && report.validation_messages > 0) /* what the device was told was wrong: a device error */
+        result = hewn_fail(error, HEWN_DEVICE_LOST, "the validation layer gave %llu messages",
+                           (unsigned long long)report.validation_messages);
+    for (size_t i = 0; watch && i < report.file_count; ++i)
+        (void)hewn_watch_add(watch, report.files[i], NULL);
+    hewn_report_destroy(&report);
+    return result;
+}
+
+/* Whether it makes sense to wait for a better scene after this. */
+static bool is_end(hewn_result result)
+{
+    return result == HEWN_CANCELLED || result == HEWN_INVALID_ARGUMENT || result == HEWN_NO_LOADER ||
+           result == HEWN_NO_DEVICE || result == HEWN_MISSING_FEATURE;
+}
+
+static hewn_result watch_scene(const mesh_request *request, hewn_watch *watch, hewn_error *error)
+{
+    HEWN_TRY(hewn_watch_add(watch, request->desc.scene.path, error));
+    double began = hewn_started();
+    for (;;) {
+        hewn_watch_mark(watch);
+        hewn_result result = mesh_once(request, began, watch, error);
+        if (is_end(result))
+            return result;
+        if (result != HEWN_OK)
+            hewn_report_failure(error);
+        if (result == HEWN_BAD_INPUT && error->file[0]) /* the fault may be in an import */
+            (void)hewn_watch_add(watch, error->file, NULL);
+        if (!request->quiet)
+            fprintf(stderr, "hewn: watching %s\n", request->desc.scene.path);
+        HEWN_TRY(hewn_watch_wait(watch, error));
+        *error = (hewn_error){0};
+        began = 0;
+    }
+}
+
+static int run(const hewn_command *command, const hewn_arguments *arguments)
+{
+    mesh_request request = {0};
+    hewn_error error = {0};
+    hewn_result result = read_request(arguments, &request, &error);
+    int code = 0;
+    if (result != HEWN_OK) {
+        code = hewn_report_misuse(command, &error);
+    } else {
+        hewn_signals_catch();
+        hewn_watch *watch = NULL;
+        if (request.watch)
+            result = hewn_watch_create(&watch, &error);
+        if (result == HEWN_OK)
+            result = watch ? watch_scene(&request, watch, &error) : mesh_once(&request, hewn_started(), NULL, &error);
+        hewn_watch_destroy(&watch);
+        if (result != HEWN_OK)
+            code = hewn_report_misuse(command, &error);
+    }
+    hewn_scene_arguments_destroy(&request.scene);
+    return code;
+}
+
+const hewn_command hewn_command_mesh = {
+    .name = "mesh",
+    .summary = "turn a scene into a mesh file",
+    .usage = "SCENE -o FILE [OPTION]...",
+    .about = "Runs SCENE (.lua, .vm; `-` reads standard input) and writes the surface of its\n"
+             "field as triangles, proven to be a closed, oriented 2-manifold. GLB is in metres\n"
+             "with +Y up; the other formats keep the scene's coordinates. A file appears under\n"
+             "its name only when it is complete. A summary goes to standard error.\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .after = "Examples:\n"
+             "  hewn mesh assets/scenes/bracket.lua -o bracket.glb --res 256\n"
+             "  hewn mesh assets/scenes/menger.lua -D L=4 -o sponge.stl --report sponge.json\n"
+             "  hewn mesh - --from vm -o - --to ply < model.vm > model.ply\n",
+    .run = run,
+};

@@ -1,0 +1,19 @@
+/* Numbers on the command line, read strictly: all of the text, no blanks, no hexadecimal, nothing infinite. */
+#ifndef HEWN_SRC_APP_NUMBER_H
+#define HEWN_SRC_APP_NUMBER_H
+
+#include "hewn/hewn.h"
+
+/* `option` is how messages call it ("--cell"). HEWN_INVALID_ARGUMENT with what was given and what is wanted. */
+hewn_result hewn_number_parse(const char *text, const char *option, double *out, hewn_error *error);
+
+/* A whole number from `least` to UINT32_MAX. */
+hewn_result hewn_count_parse(const char *text, const char *option, uint32_t least, uint32_t *out, hewn_error *error);
+
+/* "x0,y0,z0,x1,y1,z1" */
+hewn_result hewn_bounds_parse(const char *text, const char *option, hewn_box *out, hewn_error *error);
+
+/* "name=value"; `name` receives a copy that is owned by the caller (hewn_free). */
+hewn_result hewn_setting_parse(const char *text, char **name, double *value, hewn_error *error);
+
+#endif

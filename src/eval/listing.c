@@ -1,0 +1,228 @@
+#include "eval/listing.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+/* A parameter as the GPU has it. */
+static float rounded(double value)
+{
+    float single = (float)value;
+    return fabsf(single) < FLT_MIN ? 0.0f : single;
+}
+
+static void put(hewn_listing *listing, hewn_code_step *step, double value)
+{
+    listing->parameters[listing->parameter_count++] = rounded(value);
+    step->parameter_count++;
+}
+
+/* Terms with a factor of zero are left out, and a lone factor of one is not multiplied: most affine nodes are moves
+ * along the axes, and then a coordinate depends on one variable only. This much of the numbers is in the code. */
+static void put_affine(hewn_listing *listing, hewn_code_step *step, const double *factors, double last)
+{
+    uint32_t kept = 0;
+    double factor[3];
+    for (uint32_t i = 0; i < 3; i++)
+        if (rounded(factors[i]) != 0) {
+            factor[kept] = factors[i];
+            step->in[kept++] = step->in[i];
+        }
+    step->in_count = kept;
+    step->function = "affine";
+    if (kept == 1 && rounded(factor[0]) == 1) {
+        step->function = "shift";
+        kept = 0;
+    }
+    for (uint32_t i = 0; i < kept; i++)
+        put(listing, step, factor[i]);
+    put(listing, step, last);
+    if (step->in_count == 0) { /* nothing is left but the constant */
+        step->op = HEWN_OP_CONSTANT;
+        step->function = NULL;
+    }
+}
+
+/* With the slant's unit normal, half its length and its radius in the middle. */
+static void put_cone(hewn_listing *listing, hewn_code_step *step, const double *p)
+{
+    double slant = hypot(2 * p[2], p[0] - p[1]);
+    for (int i = 0; i < 3; i++)
+        put(listing, step, p[i]);
+    put(listing, step, 2 * p[2] / slant);
+    put(listing, step, (p[0] - p[1]) / slant);
+    put(listing, step, 0.5 * slant);
+    put(listing, step, 0.5 * (p[0] + p[1]));
+}
+
+static void put_parameters(hewn_listing *listing, hewn_code_step *step, const hewn_node_data *node)
+{
+    const double *p = node->parameter;
+    switch (node->op) {
+    case HEWN_OP_X:
+    case HEWN_OP_Y:
+    case HEWN_OP_Z: step->function = NULL; break;
+    case HEWN_OP_CONSTANT:
+        step->function = NULL;
+        put(listing, step, p[0]);
+        break;
+    case HEWN_OP_AFFINE: put_affine(listing, step, p, p[3]); break;
+    case HEWN_OP_PLANE: put_affine(listing, step, p, -p[3]); break;
+    case HEWN_OP_CONE: put_cone(listing, step, p); break;
+    case HEWN_OP_BLEND_QUADRATIC:
+    case HEWN_OP_BLEND_CUBIC:
+    case HEWN_OP_BLEND_CIRCULAR:
+    case HEWN_OP_BLEND_EXPONENTIAL:
+        put(listing, step, p[0]);
+        put(listing, step, 1 / p[0]);
+        break;
+    default:
+        for (int i = 0; i < hewn_op_infos[node->op].parameters; i++)
+            put(listing, step, p[i]);
+    }
+}
+
+static bool takes_plain_number(hewn_op op)
+{
+    return op == HEWN_OP_ADD || op == HEWN_OP_SUB || op == HEWN_OP_MUL || op == HEWN_OP_DIV || op == HEWN_OP_MIN ||
+           op == HEWN_OP_MAX;
+}
+
+static void add_step(hewn_listing *listing, const hewn_node_data *node, const uint32_t *places)
+{
+    const hewn_op_info *info = &hewn_op_infos[node->op];
+    hewn_code_step *step = &listing->steps[listing->count++];
+    *step = (hewn_code_step){.op = node->op,
+                             .function = info->name,
+                             .in_count = info->operands,
+                             .parameter = (uint32_t)listing->parameter_count};
+    for (uint32_t i = 0; i < info->operands; i++)
+        step->in[i] = places[node->operand[i]];
+    put_parameters(listing, step, node);
+    if (node->op <= HEWN_OP_Z)
+        step->axes = 1u << (node->op - HEWN_OP_X);
+    for (uint32_t i = 0; i < step->in_count; i++)
+        step->axes |= listing->steps[step->in[i]].axes;
+}
+
+static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
+                        hewn_error *error)
+{
+    enum { PARAMETERS_MAX = 7 };
+    uint32_t *places = hewn_alloc(hewn_field_node_count(field), sizeof *places);
+    listing->steps = hewn_alloc_zero(count, sizeof *listing->steps);
+    listing->parameters = hewn_alloc(count, PARAMETERS_MAX * sizeof *listing->parameters);
+    bool enough = places && listing->steps && listing->parameters;
+    for (size_t i = 0; enough && i < count; i++) {
+        places[ids[i]] = (uint32_t)i;
+        add_step(listing, hewn_field_node(field, ids[i]), places);
+    }
+    hewn_free(places);
+    return enough ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %zu operations", count);
+}
+
+hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, hewn_error *error)
+{
+    memset(out, 0, sizeof *out);
+    uint32_t *ids;
+    size_t count;
+    HEWN_TRY(hewn_field_live_nodes(field, root, &ids, &count, error));
+    hewn_result result = fill(out, field, ids, count, error);
+    hewn_free(ids);
+    if (result != HEWN_OK)
+        hewn_listing_destroy(out);
+    return result;
+}
+
+void hewn_listing_destroy(hewn_listing *listing)
+{
+    hewn_free(listing->steps);
+    hewn_free(listing->parameters);
+    memset(listing, 0, sizeof *listing);
+}
+
+/* --- text -------------------------------------------------------------------------------------------------------- */
+
+typedef enum listing_flavour { POINT, INTERVAL, GRADIENT } listing_flavour;
+
+static const char *const types[] = {"float", "vec2", "vec4"};
+
+static void write_operand(const hewn_listing *listing, uint32_t at, listing_flavour flavour, bool plain,
+                          hewn_text *text)
+{
+    const hewn_code_step *step = &listing->steps[at];
+    if (step->op <= HEWN_OP_Z) {
+        hewn_text_append_bytes(text, &"xyz"[step->op - HEWN_OP_X], 1);
+    } else if (step->op == HEWN_OP_CONSTANT) {
+        switch (plain ? POINT : flavour) {
+        case POINT: hewn_text_print(text, "P(%u)", step->parameter); break;
+        case INTERVAL: hewn_text_print(text, "f_number(P(%u))", step->parameter); break;
+        default: hewn_text_print(text, "vec4(vec3(0.0),P(%u))", step->parameter);
+        }
+    } else {
+        hewn_text_print(text, "n%u", at);
+    }
+}
+
+static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour flavour, hewn_text *text)
+{
+    const hewn_code_step *step = &listing->steps[at];
+    if (!step->function)
+        return;
+    hewn_text_print(text, "%s n%u=f_%s(", types[flavour], at, step->function);
+    for (uint32_t i = 0; i < step->in_count; i++) {
+        if (i > 0)
+            hewn_text_append_bytes(text, ",", 1);
+        write_operand(listing, step->in[i], flavour, i == 1 && takes_plain_number(step->op), text);
+    }
+    for (uint32_t i = 0; i < step->parameter_count; i++)
+        hewn_text_print(text, ",P(%u)", step->parameter + i);
+    hewn_text_append(text, ");\n");
+}
+
+static void write_function(const hewn_listing *listing, listing_flavour flavour, const char *opening, hewn_text *text)
+{
+    hewn_text_append(text, opening);
+    for (size_t i = 0; i < listing->count; i++)
+        write_step(listing, (uint32_t)i, flavour, text);
+    hewn_text_append(text, "return ");
+    write_operand(listing, (uint32_t)(listing->count - 1), flavour, false, text);
+    hewn_text_append(text, ";\n}\n");
+}
+
+/* What does not depend on x comes before the loop over the row's samples. */
+static void write_row(const hewn_listing *listing, hewn_text *text)
+{
+    hewn_text_append(text, "uint field_row_inside(uint i, float y, float z)\n{\n");
+    for (size_t i = 0; i < listing->count; i++)
+        if (!(listing->steps[i].axes & HEWN_AXIS_X))
+            write_step(listing, (uint32_t)i, POINT, text);
+    hewn_text_append(text, "uint bits = 0u;\nfor (uint k = 0u; k < 8u; k++) {\nfloat x = sample_x(i + k);\n");
+    for (size_t i = 0; i < listing->count; i++)
+        if (listing->steps[i].axes & HEWN_AXIS_X)
+            write_step(listing, (uint32_t)i, POINT, text);
+    hewn_text_append(text, "bits |= uint(");
+    write_operand(listing, (uint32_t)(listing->count - 1), POINT, false, text);
+    hewn_text_append(text, " < 0.0) << k;\n}\nreturn bits;\n}\n");
+}
+
+void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text)
+{
+    if (flavours & HEWN_FLAVOUR_POINT)
+        write_function(listing, POINT, "float field_point(float x, float y, float z)\n{\n", text);
+    if (flavours & HEWN_FLAVOUR_INTERVAL)
+        write_function(listing, INTERVAL,
+                       "vec2 field_interval(vec2 box_x, vec2 box_y, vec2 box_z)\n{\n"
+                       "vec2 x=f_box_side(box_x),y=f_box_side(box_y),z=f_box_side(box_z);\n",
+                       text);
+    if (flavours & HEWN_FLAVOUR_GRADIENT)
+        write_function(listing, GRADIENT,
+                       "vec4 field_gradient(float at_x, float at_y, float at_z)\n{\n"
+                       "vec4 x=vec4(1.0,0.0,0.0,at_x),y=vec4(0.0,1.0,0.0,at_y),z=vec4(0.0,0.0,1.0,at_z);\n",
+                       text);
+    if (flavours & HEWN_FLAVOUR_ROW)
+        write_row(listing, text);
+}

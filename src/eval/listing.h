@@ -1,0 +1,36 @@
+/* A field as a list of steps with their parameters side by side: what code is written from. */
+#ifndef HEWN_SRC_EVAL_LISTING_H
+#define HEWN_SRC_EVAL_LISTING_H
+
+#include "base/text.h"
+#include "eval/code.h"
+#include "field/graph.h"
+
+enum { HEWN_AXIS_X = 1, HEWN_AXIS_Y = 2, HEWN_AXIS_Z = 4 };
+
+/* What one node becomes: a call of `function` for the steps `in`, then `parameter_count` parameters. Variables and
+ * constants have no function: they are operands only. */
+typedef struct hewn_code_step {
+    const char *function;
+    hewn_op op;
+    uint32_t in[HEWN_MAX_OPERANDS]; /* positions in the listing */
+    uint32_t in_count;
+    uint32_t parameter; /* of the first one */
+    uint32_t parameter_count;
+    uint32_t axes; /* the variables it depends on */
+} hewn_code_step;
+
+typedef struct hewn_listing {
+    hewn_code_step *steps; /* operands first, the root last */
+    size_t count;
+    float *parameters; /* rounded once; what is below the smallest normal number is 0 */
+    size_t parameter_count, parameter_capacity;
+} hewn_listing;
+
+hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, hewn_error *error);
+void hewn_listing_destroy(hewn_listing *listing);
+
+/* Appends the functions of `flavours`. P(i) must be parameter i, and the library must precede. */
+void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text);
+
+#endif

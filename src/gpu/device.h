@@ -1,0 +1,83 @@
+/* What an open device consists of. Private to this room (and to its tests). */
+#ifndef HEWN_SRC_GPU_DEVICE_H
+#define HEWN_SRC_GPU_DEVICE_H
+
+#include "gpu/cache.h"
+#include "gpu/commands.h"
+#include "gpu/instance.h"
+
+enum {
+    HEWN_MARKS_MAX = 64, /* marks of one recording */
+    HEWN_PUSH_MAX = 128  /* bytes of push constants that every device has */
+};
+
+/* A descriptor set of the one layout that Hewn has: a uniform buffer at binding 0. */
+typedef struct hewn_uniform_set {
+    VkDescriptorSet handle;
+    VkBuffer buffer; /* what it points to in the present recording */
+} hewn_uniform_set;
+
+struct hewn_commands {
+    hewn_device *device;
+    VkCommandPool pool;
+    VkCommandBuffer buffer;
+    VkFence fence;
+    VkQueryPool queries; /* none where the queue has no timestamps */
+    bool open;
+    bool wrote; /* something is recorded that the next operation must wait for */
+    uint32_t marks;
+    hewn_result failure; /* the first failure of this recording */
+    hewn_error reason;
+    VkDescriptorPool *pools;
+    size_t pool_count, pool_capacity;
+    hewn_uniform_set *sets;
+    size_t set_count, set_capacity, sets_used;
+};
+
+struct hewn_device {
+    hewn_instance instance;
+    hewn_messages messages;
+    hewn_device_info info;
+    VkPhysicalDevice physical;
+    VkDevice handle;
+    bool opened; /* `vk` is complete */
+    VkQueue queue;
+    uint32_t queue_family;
+    uint32_t timestamp_bits;     /* 0: the queue has no timestamps */
+    double timestamp_seconds;    /* one tick */
+    uint32_t max_group_count[3]; /* workgroups of one dispatch */
+    uint64_t max_uniform_range;  /* bytes */
+    VkPhysicalDeviceMemoryProperties memory;
+    hewn_vulkan_device_table vk;
+    VkDescriptorSetLayout uniform_layout;
+    VkPipelineCache pipeline_cache;
+    size_t pipeline_cache_bytes; /* what the disk holds already */
+    hewn_hash pipeline_key;
+    hewn_cache cache;
+    uint64_t bytes, peak_bytes;
+    struct hewn_commands commands; /* the one recording, used again and again */
+};
+
+/* The parts of a device that commands.c owns. */
+hewn_result hewn_commands_setup(hewn_device *device, hewn_error *error);
+void hewn_commands_teardown(hewn_device *device);
+
+/* Remembers a failure of recording for the submit; the first one stays. */
+void hewn_commands_fail(hewn_commands *commands, hewn_result code, const char *format, ...) HEWN_PRINTF(3, 4);
+
+struct hewn_program {
+    VkPipelineLayout layout;
+    VkPipeline pipeline;
+    uint32_t push_bytes;
+    bool uniforms;
+};
+
+/* The parts that program.c owns: the descriptor layout and the pipeline cache (saved when it grew). */
+hewn_result hewn_programs_setup(hewn_device *device, hewn_error *error);
+void hewn_programs_teardown(hewn_device *device);
+
+/* Physical devices with their descriptions, best first (physical.c). Both arrays are owned by the caller. */
+hewn_result hewn_physical_list(const hewn_instance *instance, VkPhysicalDevice **handles, hewn_device_info **infos,
+                               size_t *count, hewn_error *error);
+
+#endif

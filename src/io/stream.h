@@ -1,0 +1,21 @@
+/* Writing many small things through one buffer, with progress. */
+#ifndef HEWN_SRC_IO_STREAM_H
+#define HEWN_SRC_IO_STREAM_H
+
+#include "io/formats.h"
+
+/* Puts item `index` at `to` and returns its end. */
+typedef char *(*hewn_put_item)(const hewn_mesh_job *job, uint64_t index, char *to);
+
+typedef struct hewn_stream {
+    hewn_put_item put;
+    uint64_t count;
+    size_t room;        /* the most bytes that one item takes */
+    double begin, span; /* its share of the whole work, for progress */
+} hewn_stream;
+
+/* Writes all items. HEWN_IO, HEWN_CANCELLED, HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_stream_write(const hewn_mesh_job *job, const hewn_stream *stream, hewn_output *output,
+                              hewn_error *error);
+
+#endif

@@ -1,0 +1,122 @@
+#include "iso/extractor.h"
+
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "iso/marching_cubes.h"
+
+extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_vertices[];
+
+#define HEWN_SHADER(name)                                                                                              \
+    extern const unsigned char hewn_shader_##name[];                                                                   \
+    extern const size_t hewn_shader_##name##_size;
+HEWN_SHADER(compact)
+HEWN_SHADER(link)
+HEWN_SHADER(classify)
+HEWN_SHADER(spread)
+HEWN_SHADER(triangles)
+#undef HEWN_SHADER
+
+static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *error)
+{
+    const struct {
+        hewn_kernel_desc desc;
+        hewn_program **place;
+    } kernels[] = {
+        {{"cull", hewn_text_iso_head, hewn_text_cull, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_cull_push)},
+         &extractor->cull},
+        {{"signs", hewn_text_iso_head, hewn_text_signs, HEWN_FLAVOUR_ROW, sizeof(struct hewn_sign_push)},
+         &extractor->signs},
+        {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT,
+          sizeof(struct hewn_vertex_push)},
+         &extractor->vertices},
+    };
+    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
+        HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &kernels[i].desc, kernels[i].place, error));
+    return HEWN_OK;
+}
+
+static hewn_result create_fixed_programs(hewn_extractor *extractor, hewn_error *error)
+{
+    const struct {
+        const char *name;
+        const unsigned char *spirv;
+        size_t bytes;
+        size_t push;
+        bool table; /* reads the marching cubes table as uniforms */
+        hewn_program **place;
+    } kernels[] = {
+        {"compact", hewn_shader_compact, hewn_shader_compact_size, sizeof(struct hewn_compact_push), false,
+         &extractor->compact},
+        {"link", hewn_shader_link, hewn_shader_link_size, sizeof(struct hewn_link_push), false, &extractor->link},
+        {"classify", hewn_shader_classify, hewn_shader_classify_size, sizeof(struct hewn_classify_push), true,
+         &extractor->classify},
+        {"spread", hewn_shader_spread, hewn_shader_spread_size, sizeof(struct hewn_spread_push), true,
+         &extractor->spread},
+        {"triangles", hewn_shader_triangles, hewn_shader_triangles_size, sizeof(struct hewn_triangle_push), true,
+         &extractor->triangles},
+    };
+    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
+        hewn_program_desc desc = {.name = kernels[i].name,
+                                  .spirv = (const uint32_t *)(const void *)kernels[i].spirv,
+                                  .spirv_bytes = kernels[i].bytes,
+                                  .push_bytes = (uint32_t)kernels[i].push,
+                                  .uniforms = kernels[i].table};
+        HEWN_TRY(hewn_program_create(extractor->device, &desc, kernels[i].place, error));
+    }
+    return HEWN_OK;
+}
+
+static hewn_result create_table(hewn_extractor *extractor, hewn_error *error)
+{
+    hewn_mc_table table;
+    hewn_mc_table_derive(&table);
+    HEWN_TRY(hewn_buffer_create(extractor->device, "marching cubes table", sizeof table, HEWN_BUFFER_UPLOAD,
+                                &extractor->table, error));
+    memcpy(extractor->table.mapped, &table, sizeof table);
+    return HEWN_OK;
+}
+
+static hewn_result create_parts(hewn_extractor *extractor, const hewn_field *field, hewn_node root, hewn_error *error)
+{
+    HEWN_TRY(hewn_code_create(extractor->device, field, root, &extractor->code, error));
+    HEWN_TRY(hewn_scan_create(extractor->device, &extractor->scan, error));
+    HEWN_TRY(create_table(extractor, error));
+    HEWN_TRY(create_fixed_programs(extractor, error));
+    return create_field_programs(extractor, error);
+}
+
+hewn_result hewn_extractor_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_extractor **out,
+                                  hewn_error *error)
+{
+    *out = NULL;
+    hewn_extractor *extractor = hewn_alloc_zero(1, sizeof *extractor);
+    if (!extractor)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an extractor");
+    extractor->device = device;
+    hewn_result result = create_parts(extractor, field, root, error);
+    if (result != HEWN_OK) {
+        hewn_extractor_destroy(&extractor);
+        return result;
+    }
+    *out = extractor;
+    return HEWN_OK;
+}
+
+void hewn_extractor_destroy(hewn_extractor **extractor_place)
+{
+    hewn_extractor *extractor = *extractor_place;
+    if (!extractor)
+        return;
+    hewn_device *device = extractor->device;
+    hewn_program **programs[] = {&extractor->cull, &extractor->signs,    &extractor->vertices, &extractor->compact,
+                                 &extractor->link, &extractor->classify, &extractor->spread,   &extractor->triangles};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        hewn_program_destroy(device, programs[i]);
+    hewn_buffer_destroy(device, &extractor->table);
+    hewn_scan_destroy(device, &extractor->scan);
+    hewn_code_destroy(device, &extractor->code);
+    hewn_free(extractor);
+    *extractor_place = NULL;
+}

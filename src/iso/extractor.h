@@ -1,0 +1,73 @@
+/* The inside of a hewn_extractor: a field's kernels and the fixed ones, and the buffers of one run. */
+#ifndef HEWN_SRC_ISO_EXTRACTOR_H
+#define HEWN_SRC_ISO_EXTRACTOR_H
+
+#include "hewn/extract.h"
+
+#include "eval/code.h"
+#include "gpu/gpu.h"
+#include "iso/grid.h"
+
+struct hewn_extractor {
+    hewn_device *device;
+    hewn_code *code;
+    hewn_scan *scan;
+    hewn_buffer table;                                            /* hewn_mc_table */
+    hewn_program *cull, *signs, *vertices;                        /* made of the field */
+    hewn_program *compact, *link, *classify, *spread, *triangles; /* the same for all */
+};
+
+/* Buffers that one run needs, all freed together. */
+#define HEWN_WORKSPACE_MOST 48
+typedef struct hewn_workspace {
+    hewn_device *device;
+    hewn_buffer buffers[HEWN_WORKSPACE_MOST];
+    uint32_t count;
+} hewn_workspace;
+
+/* A buffer of the workspace; on failure `*out` is NULL. */
+hewn_result hewn_workspace_take(hewn_workspace *workspace, const char *what, uint64_t bytes, hewn_buffer_use use,
+                                hewn_buffer **out, hewn_error *error);
+void hewn_workspace_clear(hewn_workspace *workspace);
+
+/* The bricks that culling kept. */
+typedef struct hewn_bricks {
+    uint32_t count;
+    uint32_t levels;
+    uint32_t top[3];                            /* blocks of the coarsest level */
+    const hewn_buffer *list;                    /* packed coordinates */
+    const hewn_buffer *states[HEWN_MAX_LEVELS]; /* coarsest first */
+} hewn_bricks;
+
+/* Finds the bricks that may hold surface. */
+hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_grid *grid, hewn_workspace *workspace,
+                             hewn_bricks *out, hewn_error *error);
+
+/* The surface in those bricks, as counts and ranks on the device. */
+typedef struct hewn_surface {
+    uint64_t vertex_count;
+    uint64_t triangle_count;
+    double sign_seconds; /* of the seconds that the call took, those that went into the field's signs */
+    const hewn_buffer *links, *signs, *edges, *vertex_bases, *triangle_bases;
+} hewn_surface;
+
+hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                  const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
+                                  hewn_error *error);
+
+/* What emission adds up. */
+typedef struct hewn_emission {
+    uint32_t caps;
+    float max_residual;
+} hewn_emission;
+
+/* Writes vertices and triangles into the three buffers. */
+hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                              const hewn_surface *surface, const hewn_buffer buffers[3], hewn_workspace *workspace,
+                              hewn_emission *out, hewn_error *error);
+
+/* Workgroups of `size` invocations for `count` of them, laid out in two dimensions as shaders/shared/invocation.h reads
+ * them. */
+hewn_dispatch_size hewn_groups_for(uint64_t count, uint32_t size);
+
+#endif

@@ -1,0 +1,19 @@
+/* The grid that an extraction runs on: whole cubic cells over the bounds. */
+#ifndef HEWN_SRC_ISO_GRID_H
+#define HEWN_SRC_ISO_GRID_H
+
+#include "hewn/extract.h"
+
+#include "shared/iso.h"
+
+/* The most cells on a side: a brick's coordinate has ten bits. */
+#define HEWN_MAX_RESOLUTION 8184u
+
+/* Lays cells over the bounds of `desc`: the other sides grow symmetrically to whole cells. HEWN_INVALID_ARGUMENT where
+ * that makes no sense or where floats at the bounds are too coarse to keep the vertices of a cell apart. */
+hewn_result hewn_grid_lay(const hewn_extract_desc *desc, struct hewn_grid *out, hewn_box *grown, hewn_error *error);
+
+/* Bricks along an axis. */
+uint32_t hewn_grid_bricks(const struct hewn_grid *grid, int axis);
+
+#endif

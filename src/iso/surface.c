@@ -1,0 +1,147 @@
+/* From active bricks to triangles: signs, counts, prefix sums, then every vertex and triangle at its place. */
+#include <string.h>
+
+#include "base/error.h"
+#include "iso/extractor.h"
+
+static hewn_result take_surface(const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
+                                hewn_error *error)
+{
+    const struct {
+        const char *what;
+        uint32_t words;
+        const hewn_buffer **place;
+    } wanted[] = {
+        {"neighbours of bricks", HEWN_BRICK_LINKS, &out->links},
+        {"signs of samples", HEWN_BRICK_WORDS, &out->signs},
+        {"crossed edges", 2 * HEWN_BRICK_EDGE_WORDS, &out->edges},
+        {"vertices a brick", 1, &out->vertex_bases},
+        {"triangles a brick", 1, &out->triangle_bases},
+    };
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        hewn_buffer *taken;
+        HEWN_TRY(hewn_workspace_take(workspace, wanted[i].what, (uint64_t)4 * wanted[i].words * bricks->count,
+                                     HEWN_BUFFER_DEVICE, &taken, error));
+        *wanted[i].place = taken;
+    }
+    return HEWN_OK;
+}
+
+static void record_signs(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                         const hewn_surface *surface, hewn_commands *commands)
+{
+    struct hewn_sign_push push = {
+        .grid = *grid, .count = bricks->count, .bricks = bricks->list->address, .signs = surface->signs->address};
+    hewn_commands_dispatch(commands, extractor->signs, &push, hewn_code_uniforms(extractor->code),
+                           hewn_groups_for((uint64_t)bricks->count * HEWN_BRICK_WORDS, 64));
+}
+
+static void record_links(const hewn_extractor *extractor, const hewn_bricks *bricks, const hewn_surface *surface,
+                         hewn_commands *commands)
+{
+    struct hewn_link_push push = {.levels = bricks->levels,
+                                  .count = bricks->count,
+                                  .bricks = bricks->list->address,
+                                  .links = surface->links->address};
+    memcpy(push.top, bricks->top, sizeof push.top);
+    for (uint32_t i = 0; i < bricks->levels; i++)
+        push.states[i] = bricks->states[i]->address;
+    hewn_commands_dispatch(commands, extractor->link, &push, NULL,
+                           hewn_groups_for((uint64_t)bricks->count * HEWN_BRICK_LINKS, 64));
+}
+
+static void record_classify(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                            const hewn_surface *surface, hewn_commands *commands)
+{
+    struct hewn_classify_push push = {.count = bricks->count,
+                                      .bricks = bricks->list->address,
+                                      .links = surface->links->address,
+                                      .signs = surface->signs->address,
+                                      .edges = surface->edges->address,
+                                      .vertex_counts = surface->vertex_bases->address,
+                                      .triangle_counts = surface->triangle_bases->address};
+    memcpy(push.cells, grid->cells, sizeof push.cells);
+    hewn_commands_dispatch(commands, extractor->classify, &push, &extractor->table, hewn_groups_for(bricks->count, 32));
+}
+
+hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                  const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
+                                  hewn_error *error)
+{
+    hewn_buffer *totals, *results, *scratch;
+    HEWN_TRY(take_surface(bricks, workspace, out, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_DEVICE, &totals, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_READBACK, &results, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "scratch of sums", hewn_scan_scratch_bytes(bricks->count),
+                                 HEWN_BUFFER_DEVICE, &scratch, error));
+    hewn_commands *commands;
+    double times[2] = {0};
+    HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
+    hewn_commands_mark(commands);
+    record_signs(extractor, grid, bricks, out, commands);
+    hewn_commands_mark(commands);
+    record_links(extractor, bricks, out, commands);
+    record_classify(extractor, grid, bricks, out, commands);
+    hewn_scan_record(extractor->scan, commands, out->vertex_bases->address, bricks->count, totals->address,
+                     scratch->address);
+    hewn_scan_record(extractor->scan, commands, out->triangle_bases->address, bricks->count, totals->address + 8,
+                     scratch->address);
+    hewn_commands_copy(commands, totals, 0, results, 0, 16);
+    HEWN_TRY(hewn_commands_submit(&commands, times, error));
+    const uint32_t *total = results->mapped;
+    HEWN_TRY(hewn_scan_check(total, "vertices", error));
+    HEWN_TRY(hewn_scan_check(total + 2, "triangles", error));
+    out->sign_seconds = times[1];
+    out->vertex_count = total[0];
+    out->triangle_count = total[2];
+    return HEWN_OK;
+}
+
+static void record_spread(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                          const hewn_surface *surface, const hewn_buffer buffers[3], hewn_commands *commands)
+{
+    struct hewn_spread_push push = {.count = bricks->count,
+                                    .bricks = bricks->list->address,
+                                    .links = surface->links->address,
+                                    .signs = surface->signs->address,
+                                    .edges = surface->edges->address,
+                                    .vertex_bases = surface->vertex_bases->address,
+                                    .triangle_bases = surface->triangle_bases->address,
+                                    .vertices = buffers[0].address,
+                                    .indices = buffers[2].address};
+    memcpy(push.cells, grid->cells, sizeof push.cells);
+    hewn_commands_dispatch(commands, extractor->spread, &push, &extractor->table, hewn_groups_for(bricks->count, 32));
+}
+
+hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                              const hewn_surface *surface, const hewn_buffer buffers[3], hewn_workspace *workspace,
+                              hewn_emission *out, hewn_error *error)
+{
+    hewn_buffer *summary, *results;
+    HEWN_TRY(hewn_workspace_take(workspace, "summary", 4 * HEWN_SUMMARY_WORDS, HEWN_BUFFER_DEVICE, &summary, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "summary", 4 * HEWN_SUMMARY_WORDS, HEWN_BUFFER_READBACK, &results, error));
+    hewn_commands *commands;
+    HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
+    hewn_commands_fill(commands, summary, 0, summary->size, 0);
+    record_spread(extractor, grid, bricks, surface, buffers, commands);
+    struct hewn_vertex_push vertices = {.grid = *grid,
+                                        .count = (uint32_t)surface->vertex_count,
+                                        .bricks = bricks->list->address,
+                                        .positions = buffers[0].address,
+                                        .normals = buffers[1].address,
+                                        .summary = summary->address};
+    hewn_commands_dispatch(commands, extractor->vertices, &vertices, hewn_code_uniforms(extractor->code),
+                           hewn_groups_for(surface->vertex_count, 64));
+    struct hewn_triangle_push triangles = {.count = (uint32_t)surface->triangle_count,
+                                           .links = surface->links->address,
+                                           .edges = surface->edges->address,
+                                           .indices = buffers[2].address};
+    hewn_commands_dispatch(commands, extractor->triangles, &triangles, &extractor->table,
+                           hewn_groups_for(surface->triangle_count, 64));
+    hewn_commands_copy(commands, summary, 0, results, 0, summary->size);
+    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    const uint32_t *words = results->mapped;
+    out->caps = words[HEWN_SUMMARY_CAPS];
+    memcpy(&out->max_residual, &words[HEWN_SUMMARY_RESIDUAL], sizeof out->max_residual);
+    return HEWN_OK;
+}

@@ -1,0 +1,260 @@
+#include "pipeline/report.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/json.h"
+
+void hewn_report_add_stage(hewn_report *report, const char *name, double begin, double end)
+{
+    if (report->stage_count == sizeof report->stages / sizeof *report->stages)
+        return;
+    hewn_report_stage *stage = &report->stages[report->stage_count++];
+    snprintf(stage->name, sizeof stage->name, "%s", name);
+    stage->begin = begin;
+    stage->end = end;
+}
+
+static hewn_result copy_files(hewn_report *report, const hewn_scene *scene)
+{
+    size_t count = hewn_scene_file_count(scene);
+    report->files = hewn_alloc_zero(count, sizeof *report->files);
+    if (!report->files)
+        return HEWN_OUT_OF_MEMORY;
+    for (size_t i = 0; i < count; ++i) {
+        report->files[i] = hewn_strdup(hewn_scene_file(scene, i));
+        if (!report->files[i])
+            return HEWN_OUT_OF_MEMORY;
+        report->file_count = i + 1;
+    }
+    return HEWN_OK;
+}
+
+static hewn_result copy_parameters(hewn_report *report, const hewn_scene *scene)
+{
+    size_t count = hewn_scene_parameter_count(scene);
+    report->parameters = hewn_alloc_zero(count, sizeof *report->parameters);
+    if (!report->parameters)
+        return HEWN_OUT_OF_MEMORY;
+    for (size_t i = 0; i < count; ++i) {
+        const hewn_scene_parameter *parameter = hewn_scene_parameter_at(scene, i);
+        report->parameters[i].name = hewn_strdup(parameter->name);
+        if (!report->parameters[i].name)
+            return HEWN_OUT_OF_MEMORY;
+        report->parameters[i].value = parameter->value;
+        report->parameter_count = i + 1;
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_report_add_scene(hewn_report *report, const hewn_scene *scene, hewn_error *error)
+{
+    if (copy_files(report, scene) != HEWN_OK || copy_parameters(report, scene) != HEWN_OK)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the report");
+    return HEWN_OK;
+}
+
+/* VmHWM belongs to this program alone; ru_maxrss, the fallback, starts with what the parent had before exec. */
+uint64_t hewn_peak_host_bytes(void)
+{
+    unsigned long long kibibytes = 0;
+    FILE *status = fopen("/proc/self/status", "r");
+    if (status) {
+        char line[256];
+        while (!kibibytes && fgets(line, sizeof line, status))
+            if (sscanf(line, "VmHWM: %llu kB", &kibibytes) != 1)
+                kibibytes = 0;
+        fclose(status);
+    }
+    struct rusage usage;
+    if (!kibibytes && getrusage(RUSAGE_SELF, &usage) == 0)
+        kibibytes = (unsigned long long)usage.ru_maxrss;
+    return (uint64_t)kibibytes * 1024;
+}
+
+void hewn_report_destroy(hewn_report *report)
+{
+    if (!report)
+        return;
+    hewn_free(report->input);
+    hewn_free(report->output);
+    for (size_t i = 0; i < report->file_count; ++i)
+        hewn_free(report->files[i]);
+    hewn_free(report->files);
+    for (size_t i = 0; i < report->parameter_count; ++i)
+        hewn_free(report->parameters[i].name);
+    hewn_free(report->parameters);
+    *report = (hewn_report){0};
+}
+
+/* Microseconds are all that a wall clock is good for; more digits only make the file hard to read. */
+static double microseconds(double seconds)
+{
+    return round(seconds * 1e6) / 1e6;
+}
+
+static void print_vector(hewn_json *json, const char *key, const double vector[3])
+{
+    hewn_json_array(json, key);
+    for (int axis = 0; axis < 3; ++axis)
+        hewn_json_number(json, NULL, vector[axis]);
+    hewn_json_end_array(json);
+}
+
+static void print_box(hewn_json *json, const char *key, const hewn_box *box)
+{
+    hewn_json_object(json, key);
+    print_vector(json, "lo", box->lo);
+    print_vector(json, "hi", box->hi);
+    hewn_json_end_object(json);
+}
+
+static const char *format_name(hewn_mesh_format format)
+{
+    switch (format) {
+    case HEWN_MESH_GLB: return "glb";
+    case HEWN_MESH_OBJ: return "obj";
+    case HEWN_MESH_PLY: return "ply";
+    case HEWN_MESH_STL: return "stl";
+    case HEWN_MESH_UNKNOWN: break;
+    }
+    return NULL;
+}
+
+static const char *bounds_source_name(hewn_bounds_source source)
+{
+    switch (source) {
+    case HEWN_BOUNDS_GIVEN: return "given";
+    case HEWN_BOUNDS_SCENE: return "scene";
+    case HEWN_BOUNDS_FIELD: return "field";
+    }
+    return NULL;
+}
+
+static void print_request(hewn_json *json, const hewn_report *report)
+{
+    hewn_json_array(json, "files");
+    for (size_t i = 0; i < report->file_count; ++i)
+        hewn_json_string(json, NULL, report->files[i]);
+    hewn_json_end_array(json);
+    hewn_json_object(json, "parameters");
+    for (size_t i = 0; i < report->parameter_count; ++i)
+        hewn_json_number(json, report->parameters[i].name, report->parameters[i].value);
+    hewn_json_end_object(json);
+    hewn_json_string(json, "units", report->units);
+    hewn_json_string(json, "output", report->output);
+    hewn_json_string(json, "format", format_name(report->format));
+    hewn_json_string(json, "method", "mc");
+    hewn_json_bool(json, "open", report->open);
+    if (report->resolution)
+        hewn_json_unsigned(json, "resolution", report->resolution);
+    else
+        hewn_json_string(json, "resolution", NULL);
+    if (report->threads)
+        hewn_json_unsigned(json, "threads", report->threads);
+    else
+        hewn_json_string(json, "threads", NULL);
+    hewn_json_string(json, "device", report->device.name);
+    hewn_json_string(json, "driver", report->device.driver);
+}
+
+static void print_stages(hewn_json *json, const hewn_report *report)
+{
+    hewn_json_number(json, "seconds", microseconds(report->seconds));
+    hewn_json_array(json, "stages");
+    for (uint32_t i = 0; i < report->stage_count; ++i) {
+        const hewn_report_stage *stage = &report->stages[i];
+        hewn_json_object(json, NULL);
+        hewn_json_string(json, "name", stage->name);
+        hewn_json_number(json, "begin", microseconds(stage->begin));
+        hewn_json_number(json, "end", microseconds(stage->end));
+        hewn_json_number(json, "seconds", microseconds(stage->end - stage->begin));
+        hewn_json_end_object(json);
+    }
+    hewn_json_end_array(json);
+}
+
+static void print_extraction(hewn_json *json, const hewn_report *report)
+{
+    const hewn_extract_stats *stats = &report->extraction;
+    print_box(json, "bounds", &stats->bounds);
+    hewn_json_string(json, "bounds_from", bounds_source_name(report->bounds_source));
+    hewn_json_number(json, "cell", stats->cell);
+    hewn_json_array(json, "cells");
+    for (int axis = 0; axis < 3; ++axis)
+        hewn_json_unsigned(json, NULL, stats->cells[axis]);
+    hewn_json_end_array(json);
+    hewn_json_bool(json, "left_bounds", stats->left_bounds);
+    hewn_json_unsigned(json, "cap_vertices", stats->cap_vertices);
+    hewn_json_unsigned(json, "cells_visited", stats->cells_visited);
+    hewn_json_unsigned(json, "bricks_active", stats->bricks_active);
+    hewn_json_unsigned(json, "validation_messages", report->validation_messages);
+}
+
+static void print_certificate(hewn_json *json, const hewn_certificate *certificate)
+{
+    hewn_json_object(json, "certificate");
+    hewn_json_bool(json, "closed", certificate->closed);
+    hewn_json_bool(json, "manifold", certificate->manifold);
+    hewn_json_bool(json, "oriented", certificate->oriented);
+    hewn_json_unsigned(json, "components", certificate->components);
+    hewn_json_integer(json, "genus", certificate->genus);
+    hewn_json_number(json, "volume", certificate->volume);
+    hewn_json_number(json, "area", certificate->area);
+    print_box(json, "bounds", &certificate->bounds);
+    hewn_json_number(json, "max_residual", certificate->max_residual);
+    hewn_json_unsigned(json, "boundary_edges", certificate->boundary_edges);
+    hewn_json_unsigned(json, "non_manifold_edges", certificate->non_manifold_edges);
+    hewn_json_unsigned(json, "non_manifold_vertices", certificate->non_manifold_vertices);
+    hewn_json_unsigned(json, "degenerate_faces", certificate->degenerate_faces);
+    hewn_json_end_object(json);
+}
+
+static void print_result(hewn_json *json, const hewn_report *report)
+{
+    hewn_json_object(json, "peak");
+    hewn_json_unsigned(json, "host_bytes", report->peak_host_bytes);
+    hewn_json_unsigned(json, "device_bytes", report->peak_device_bytes);
+    hewn_json_end_object(json);
+    hewn_json_object(json, "counts");
+    hewn_json_unsigned(json, "vertices", report->vertices);
+    hewn_json_unsigned(json, "faces", report->faces);
+    hewn_json_end_object(json);
+    print_certificate(json, &report->certificate);
+}
+
+static hewn_result write_text(const hewn_text *text, const char *path, hewn_error *error)
+{
+    HEWN_TRY(hewn_text_status(text, error));
+    hewn_output *output = NULL;
+    HEWN_TRY(hewn_output_create(path, &output, error));
+    hewn_result result = hewn_output_write(output, text->bytes, text->length, error);
+    if (result == HEWN_OK)
+        return hewn_output_finish(&output, error);
+    hewn_output_destroy(&output);
+    return result;
+}
+
+hewn_result hewn_report_write(const hewn_report *report, const char *path, hewn_error *error)
+{
+    hewn_text text = {0};
+    hewn_json json = hewn_json_begin(&text);
+    hewn_json_object(&json, NULL);
+    hewn_json_string(&json, "version", hewn_version());
+    hewn_json_string(&json, "input", report->input);
+    if (report->output) /* a mesh that was only examined has no making to tell of */
+        print_request(&json, report);
+    print_stages(&json, report);
+    if (report->output)
+        print_extraction(&json, report);
+    print_result(&json, report);
+    hewn_json_end_object(&json);
+    hewn_result result = write_text(&text, path, error);
+    hewn_text_clear(&text);
+    return result;
+}

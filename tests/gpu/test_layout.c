@@ -1,0 +1,146 @@
+/* Structs that cross from C to the device: every member is where both think it is. The host fills push constants with
+ * each word's own number; a shader reads each member and writes back what it saw, which must be the member's offset in
+ * C. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/text.h"
+#include "gpu/gpu.h"
+#include "shared/iso.h"
+
+extern const char hewn_text_iso_head[];
+
+typedef struct member {
+    const char *name;
+    size_t offset;
+    const char *reader; /* how GLSL turns it into a uint */
+} member;
+
+#define NUMBER "uint"
+#define REAL "floatBitsToUint"
+#define ADDRESS "low"
+#define MEMBER(type, name, reader)                                                                                     \
+    {                                                                                                                  \
+#name, offsetof(struct type, name), reader                                                                     \
+    }
+#define GRID(type)                                                                                                     \
+    MEMBER(type, grid.origin[0], REAL), MEMBER(type, grid.origin[2], REAL), MEMBER(type, grid.far[0], REAL),           \
+        MEMBER(type, grid.far[2], REAL), MEMBER(type, grid.cell, REAL), MEMBER(type, grid.cells[0], NUMBER),           \
+        MEMBER(type, grid.cells[2], NUMBER), MEMBER(type, grid.open, NUMBER)
+
+static hewn_device *device;
+
+static int open_device(void **state)
+{
+    (void)state;
+    hewn_device_desc desc = {.validation = true};
+    return hewn_device_create(&desc, &device, NULL) == HEWN_OK ? 0 : -1;
+}
+
+static int close_device(void **state)
+{
+    (void)state;
+    uint64_t messages = hewn_device_message_count(device);
+    hewn_device_destroy(&device);
+    return messages == 0 ? 0 : -1;
+}
+
+static void write_shader(hewn_text *glsl, const char *type, const member *members, size_t count)
+{
+    hewn_text_append(glsl, hewn_text_iso_head);
+    hewn_text_append(glsl, "#extension GL_EXT_buffer_reference_uvec2 : require\n#define low(address) uvec2(address).x\n"
+                           "layout(local_size_x = 1) in;\n");
+    hewn_text_print(glsl,
+                    "layout(push_constant, scalar) uniform Push { %s s; };\n"
+                    "layout(set = 0, binding = 0, scalar) uniform Where { Uints seen; };\nvoid main() {\n",
+                    type);
+    for (size_t i = 0; i < count; i++)
+        hewn_text_print(glsl, "seen.at[%zu] = %s(s.%s);\n", i, members[i].reader, members[i].name);
+    hewn_text_append(glsl, "}\n");
+}
+
+static void check_struct(const char *type, size_t bytes, const member *members, size_t count)
+{
+    hewn_error error = {0};
+    hewn_text glsl = {0};
+    write_shader(&glsl, type, members, count);
+    assert_true(bytes <= 128 && bytes % 4 == 0);
+    hewn_program_desc desc = {.name = type, .glsl = glsl.bytes, .push_bytes = (uint32_t)bytes, .uniforms = true};
+    hewn_program *program;
+    if (hewn_program_create(device, &desc, &program, &error) != HEWN_OK)
+        fail_msg("%s", error.message);
+    hewn_buffer where, seen;
+    assert_int_equal(hewn_buffer_create(device, "where", 8, HEWN_BUFFER_UPLOAD, &where, NULL), HEWN_OK);
+    assert_int_equal(hewn_buffer_create(device, "seen", 4 * count, HEWN_BUFFER_READBACK, &seen, NULL), HEWN_OK);
+    memcpy(where.mapped, &seen.address, 8);
+    uint32_t words[32];
+    for (uint32_t i = 0; i < 32; i++)
+        words[i] = i;
+    hewn_commands *commands;
+    assert_int_equal(hewn_commands_begin(device, &commands, NULL), HEWN_OK);
+    hewn_commands_dispatch(commands, program, words, &where, (hewn_dispatch_size){1, 1, 1});
+    assert_int_equal(hewn_commands_submit(&commands, NULL, NULL), HEWN_OK);
+    for (size_t i = 0; i < count; i++)
+        assert_int_equal(((const uint32_t *)seen.mapped)[i] * 4, members[i].offset);
+    hewn_buffer_destroy(device, &where);
+    hewn_buffer_destroy(device, &seen);
+    hewn_program_destroy(device, &program);
+    hewn_text_clear(&glsl);
+}
+
+#define CHECK(type, ...)                                                                                               \
+    do {                                                                                                               \
+        const member members[] = {__VA_ARGS__};                                                                        \
+        check_struct(#type, sizeof(struct type), members, sizeof members / sizeof *members);                           \
+    } while (0)
+
+static void test_field_kernels(void **state)
+{
+    (void)state;
+    CHECK(hewn_cull_push, GRID(hewn_cull_push), MEMBER(hewn_cull_push, size, NUMBER),
+          MEMBER(hewn_cull_push, dense[0], NUMBER), MEMBER(hewn_cull_push, dense[2], NUMBER),
+          MEMBER(hewn_cull_push, parents, ADDRESS), MEMBER(hewn_cull_push, tested, ADDRESS),
+          MEMBER(hewn_cull_push, states, ADDRESS), MEMBER(hewn_cull_push, flags, ADDRESS));
+    CHECK(hewn_sign_push, GRID(hewn_sign_push), MEMBER(hewn_sign_push, count, NUMBER),
+          MEMBER(hewn_sign_push, bricks, ADDRESS), MEMBER(hewn_sign_push, signs, ADDRESS));
+    CHECK(hewn_vertex_push, GRID(hewn_vertex_push), MEMBER(hewn_vertex_push, count, NUMBER),
+          MEMBER(hewn_vertex_push, bricks, ADDRESS), MEMBER(hewn_vertex_push, positions, ADDRESS),
+          MEMBER(hewn_vertex_push, normals, ADDRESS), MEMBER(hewn_vertex_push, summary, ADDRESS));
+}
+
+static void test_fixed_kernels(void **state)
+{
+    (void)state;
+    CHECK(hewn_compact_push, MEMBER(hewn_compact_push, dense[0], NUMBER), MEMBER(hewn_compact_push, dense[2], NUMBER),
+          MEMBER(hewn_compact_push, parents, ADDRESS), MEMBER(hewn_compact_push, states, ADDRESS),
+          MEMBER(hewn_compact_push, ranks, ADDRESS), MEMBER(hewn_compact_push, control, ADDRESS),
+          MEMBER(hewn_compact_push, kept, ADDRESS));
+    CHECK(hewn_link_push, MEMBER(hewn_link_push, top[0], NUMBER), MEMBER(hewn_link_push, levels, NUMBER),
+          MEMBER(hewn_link_push, count, NUMBER), MEMBER(hewn_link_push, bricks, ADDRESS),
+          MEMBER(hewn_link_push, links, ADDRESS), MEMBER(hewn_link_push, states[0], ADDRESS),
+          MEMBER(hewn_link_push, states[4], ADDRESS));
+    CHECK(hewn_classify_push, MEMBER(hewn_classify_push, cells[0], NUMBER), MEMBER(hewn_classify_push, count, NUMBER),
+          MEMBER(hewn_classify_push, bricks, ADDRESS), MEMBER(hewn_classify_push, links, ADDRESS),
+          MEMBER(hewn_classify_push, signs, ADDRESS), MEMBER(hewn_classify_push, edges, ADDRESS),
+          MEMBER(hewn_classify_push, vertex_counts, ADDRESS), MEMBER(hewn_classify_push, triangle_counts, ADDRESS));
+    CHECK(hewn_spread_push, MEMBER(hewn_spread_push, cells[0], NUMBER), MEMBER(hewn_spread_push, count, NUMBER),
+          MEMBER(hewn_spread_push, bricks, ADDRESS), MEMBER(hewn_spread_push, vertex_bases, ADDRESS),
+          MEMBER(hewn_spread_push, triangle_bases, ADDRESS), MEMBER(hewn_spread_push, vertices, ADDRESS),
+          MEMBER(hewn_spread_push, indices, ADDRESS));
+    CHECK(hewn_triangle_push, MEMBER(hewn_triangle_push, count, NUMBER), MEMBER(hewn_triangle_push, links, ADDRESS),
+          MEMBER(hewn_triangle_push, edges, ADDRESS), MEMBER(hewn_triangle_push, indices, ADDRESS));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_field_kernels),
+        cmocka_unit_test(test_fixed_kernels),
+    };
+    return cmocka_run_group_tests_name("layout", tests, open_device, close_device);
+}
