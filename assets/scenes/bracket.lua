@@ -37,23 +37,30 @@ for _, sx in ipairs({-1, 1}) do
 end
 plate = plate:move(0, 0, thickness / 2)
 
+-- The side of a plane that the normal points away from, of the plane through a point with that normal.
+local function below(nx, ny, nz, px, py, pz)
+    return plane(nx, ny, nz, (nx * px + ny * py + nz * pz) / sqrt(nx ^ 2 + ny ^ 2 + nz ^ 2))
+end
+
 -- The web narrows from the plate to the boss: a wide box between two leaning planes.
 local web_top = flange * 0.95
-local web_bottom = math.min(width / 2 - 14, flange * 1.25)
+local web_bottom = math.min(width / 2 - 26, flange * 1.25)
 local lean = (web_bottom - web_top) / height
 local web = box(4 * flange, thickness, height):move(0, 0, height / 2)
-    & plane(1, 0, lean, web_bottom)
-    & plane(-1, 0, lean, web_bottom)
+    & below(1, 0, lean, web_bottom, 0, 0)
+    & below(-1, 0, lean, -web_bottom, 0, 0)
 
 local boss = along_y(flange, boss_length):move(0, 0, height)
 
--- One rib in front and one behind: a plate in the yz plane under a slope.
+-- A rib in front and one behind, from the plate's edge up to under the boss.
 local rib_top = height - flange * 0.6
-local rib_reach = depth / 2 - 8
-local run = rib_top - thickness
-local rib = box(thickness * 0.8, 2 * rib_reach, rib_top):move(0, 0, rib_top / 2)
-    & plane(0, run, rib_reach, rib_reach * (rib_top + 2))
-    & plane(0, -run, rib_reach, rib_reach * (rib_top + 2))
+local rib_reach = depth / 2 - 6
+local foot = thickness + 3
+local rise, run = height - flange - foot, rib_reach - boss_length / 2
+local rib = box(thickness * 0.8, depth, rib_top):move(0, 0, rib_top / 2)
+    & below(0, rise, run, 0, rib_reach, foot)
+    & below(0, -rise, run, 0, -rib_reach, foot)
+    & box(thickness, 2 * rib_reach, 2 * rib_top)
 
 local body = smooth_union(web, boss, fillet, "circular")
 body = smooth_union(body, rib, fillet * 0.6, "circular")

@@ -158,9 +158,9 @@ HEWN_API hewn_result hewn_field_gradient(const hewn_field *field, hewn_node node
 HEWN_API hewn_result hewn_field_bound(const hewn_field *field, hewn_node node, const hewn_box *box, hewn_interval *out,
                                       hewn_error *error);
 
-/* A box, proven to contain all points with a value below 0, found from the shapes in the graph and by interval
- * arithmetic. HEWN_BAD_INPUT if none can be proven (the shape is infinite, or too involved) or if the shape is empty.
- */
+/* A box, proven to contain all points with a value of 0 or below (among those with coordinates up to 2^60), found from
+ * the shapes in the graph and by interval arithmetic. HEWN_BAD_INPUT if none can be proven (the shape is infinite, or
+ * too involved) or if the shape is empty. */
 HEWN_API hewn_result hewn_field_find_box(const hewn_field *field, hewn_node node, hewn_box *out, hewn_error *error);
 
 /* How many distinct nodes the value of `node` depends on, itself included. */

@@ -358,18 +358,23 @@ vec2 f_max(vec2 a, float b)
 }
 
 //: mod
-/* By a single divisor, and between two of its multiples (with room to spare), it is a shift; else it may be anything
- * from 0 to the divisor. */
+/* Where the whole part q of a/b is the same everywhere (with room to spare) it is a - q |b|, else anything from 0 to |b|. */
 precise vec2 f_mod(vec2 a, vec2 b)
 {
     vec2 m = f_magnitude(b);
-    precise vec2 turns = f_apart(a / m.y, abs(a / m.y) * 9.5367432e-07 + 9.5367432e-07);
-    bool shift = m.x == m.y && floor(turns.x) == floor(turns.y) && abs(turns.x) < 4e6 && abs(turns.y) < 4e6;
-    precise vec2 ends = vec2(f_mod(a.x, m.y), f_mod(a.y, m.y));
-    vec2 r = f_apart(ends, vec2(m.y * 4.7683716e-07 + F_TINY));
-    r = vec2(f_pick(shift && r.x > 0.0, r.x, 0.0), f_pick(shift && r.y < m.y, r.y, m.y));
+    precise vec4 turns = a.xxyy / m.xyxy;
+    vec2 ends = f_hull(f_ordered(turns.x, turns.y), f_ordered(turns.z, turns.w));
+    precise vec2 wide = f_apart(ends, abs(ends) * 9.5367432e-07 + 9.5367432e-07);
+    float q = floor(ends.x);
+    bool shift = floor(wide.x) == floor(wide.y) && abs(wide.x) < 4e6 && abs(wide.y) < 4e6;
+    shift = shift || (q == 0.0 && a.x >= 0.0 && a.y < m.x);
+    precise vec2 multiples = f_ordered(q * m.x, q * m.y);
+    precise vec2 rest = a - multiples.yx;
+    precise vec2 lost = (abs(multiples.yx) + m.yy) * (4.0 * F_U) + F_TINY;
+    rest = f_apart(rest, lost);
+    vec2 r = vec2(f_pick(shift && rest.x > 0.0, rest.x, 0.0), f_pick(shift && rest.y < m.y, rest.y, m.y));
     bool zero = b.x <= 0.0 && b.y >= 0.0, far = m.y > 8.5e37;
-    bool endless = (max(floatBitsToInt(abs(a.x)), floatBitsToInt(abs(a.y)))) >= 0x7f800000;
+    bool endless = max(floatBitsToInt(abs(a.x)), floatBitsToInt(abs(a.y))) >= 0x7f800000;
     return f_whole_if(zero || far || endless, r);
 }
 

@@ -348,6 +348,7 @@ precise float f_mod(float a, float b)
     precise float above = r + m, below = r - m;
     r = f_pick(r < 0.0, above, f_pick(r >= m, below, r));
     r = f_pick(r < 0.0, 0.0, f_pick(r > m, m, r));
+    r = f_pick(f_is_nan(r), 0.0, r); /* the quotient overflowed */
     bool endless = m > 3.40282347e38;
     precise float shifted = a + m;
     r = f_pick(endless, f_pick(a < 0.0, shifted, a), r);

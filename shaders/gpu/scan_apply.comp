@@ -21,13 +21,17 @@ void main()
 {
     uint block = block_index();
     uint here = block_count(block, level_count());
-    Uints values = block_values(block);
     uint lane = gl_LocalInvocationID.x;
+    Uints values = advance(push.values, block, HEWN_SCAN_BLOCK);
     uint first = lane * HEWN_SCAN_ITEMS;
+    uint kept[HEWN_SCAN_ITEMS];
     uint sum = 0u;
-    for (uint i = 0u; i < HEWN_SCAN_ITEMS; i++)
+    for (uint i = 0u; i < HEWN_SCAN_ITEMS; i++) {
+        kept[i] = 0u;
         if (first + i < here)
-            sum += values.at[(first + i) * push.stride];
+            kept[i] = values.at[first + i];
+        sum += kept[i];
+    }
     sums[lane] = sum;
     uint total = sum;
     for (uint step = 1u; step < HEWN_SCAN_GROUP; step *= 2u) {
@@ -39,11 +43,10 @@ void main()
     }
     uint prefix = total - sum;
     if (uvec2(push.sums) != uvec2(0) && here > 0u)
-        prefix += Uints(advance(uvec2(push.sums), block, 8u)).at[0];
-    for (uint i = 0u; i < HEWN_SCAN_ITEMS; i++)
-        if (first + i < here) {
-            uint value = values.at[(first + i) * push.stride];
-            values.at[(first + i) * push.stride] = prefix;
-            prefix += value;
-        }
+        prefix += advance(push.sums, block, 1u).at[0];
+    for (uint i = 0u; i < HEWN_SCAN_ITEMS; i++) {
+        if (first + i < here)
+            values.at[first + i] = prefix;
+        prefix += kept[i];
+    }
 }

@@ -1,12 +1,13 @@
 /* GLSL only: where a block of a level lies. Included by the prefix sum's shaders after their push constants `push`. */
 
-/* An address is two words here: 64-bit integers are not everywhere. */
-uvec2 advance(uvec2 address, uint times, uint bytes)
+/* The word `index` of an array. An address is two words here: 64-bit integers are not everywhere. */
+Uints advance(Uints array, uint index, uint words)
 {
+    uvec2 address = uvec2(array);
     uint low, high, carry;
-    umulExtended(times, bytes, high, low);
+    umulExtended(index, words * 4u, high, low);
     uint x = uaddCarry(address.x, low, carry);
-    return uvec2(x, address.y + high + carry);
+    return Uints(uvec2(x, address.y + high + carry));
 }
 
 uint block_index()
@@ -27,10 +28,4 @@ uint block_count(uint block, uint count)
 {
     uint blocks = count / HEWN_SCAN_BLOCK + uint(count % HEWN_SCAN_BLOCK != 0u);
     return block < blocks ? min(count - block * HEWN_SCAN_BLOCK, HEWN_SCAN_BLOCK) : 0u;
-}
-
-/* The block's first value: from here on, offsets are small. */
-Uints block_values(uint block)
-{
-    return Uints(advance(uvec2(push.values), block, HEWN_SCAN_BLOCK * 4u * push.stride));
 }

@@ -20,20 +20,19 @@ shared uint highs[HEWN_SCAN_GROUP];
 void main()
 {
     uint block = block_index();
-    uint count = level_count();
-    uint here = block_count(block, count);
-    Uints values = block_values(block);
+    uint here = block_count(block, level_count());
     uint lane = gl_LocalInvocationID.x;
+    Uints values = advance(push.values, block, HEWN_SCAN_BLOCK);
     uint low = 0u, high = 0u;
-    for (uint i = 0u; i < HEWN_SCAN_ITEMS; i++) {
-        uint item = i * HEWN_SCAN_GROUP + lane;
-        if (item < here) {
-            uint value = values.at[item * push.stride];
-            low += value;
-            high += uint(low < value);
-            if (push.stride == 2u)
-                high += values.at[item * 2u + 1u];
-        }
+    for (uint item = lane; item < here; item += HEWN_SCAN_GROUP) {
+        uint value = values.at[item];
+        low += value;
+        high += uint(low < value);
+    }
+    if (uvec2(push.highs) != uvec2(0)) {
+        values = advance(push.highs, block, HEWN_SCAN_BLOCK);
+        for (uint item = lane; item < here; item += HEWN_SCAN_GROUP)
+            high += values.at[item];
     }
     lows[lane] = low;
     highs[lane] = high;
@@ -46,8 +45,7 @@ void main()
         }
     }
     if (lane == 0u && (here > 0u || block == 0u)) {
-        Uints sum = Uints(advance(uvec2(push.sums), block, 8u));
-        sum.at[0] = lows[0];
-        sum.at[1] = highs[0];
+        advance(push.sums, block, 1u).at[0] = lows[0];
+        advance(push.sum_highs, block, 1u).at[0] = highs[0];
     }
 }

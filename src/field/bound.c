@@ -46,10 +46,10 @@ static hewn_interval binary(const hewn_node_data *node, hewn_interval a, hewn_in
     }
 }
 
-hewn_interval hewn_program_bound(const hewn_program *program, const hewn_box *bounds, hewn_interval *scratch)
+hewn_interval hewn_tape_bound(const hewn_tape *tape, const hewn_box *bounds, hewn_interval *scratch)
 {
-    for (size_t i = 0; i < program->count; i++) {
-        const hewn_step *step = &program->steps[i];
+    for (size_t i = 0; i < tape->count; i++) {
+        const hewn_step *step = &tape->steps[i];
         const hewn_node_data *node = step->node;
         switch (hewn_op_infos[node->op].operands) {
         case 0:
@@ -68,7 +68,7 @@ hewn_interval hewn_program_bound(const hewn_program *program, const hewn_box *bo
         }
         }
     }
-    return scratch[program->count - 1];
+    return scratch[tape->count - 1];
 }
 
 hewn_result hewn_field_bound(const hewn_field *field, hewn_node node, const hewn_box *box, hewn_interval *out,
@@ -83,15 +83,15 @@ hewn_result hewn_field_bound(const hewn_field *field, hewn_node node, const hewn
         if (!(box->lo[i] <= box->hi[i]))
             return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the box has no inside along %c (%g to %g)", "xyz"[i],
                              box -> lo[i], box -> hi[i]);
-    hewn_program program;
-    HEWN_TRY(hewn_program_create(&program, field, node, error));
-    hewn_interval *scratch = hewn_alloc(program.count, sizeof *scratch);
+    hewn_tape tape;
+    HEWN_TRY(hewn_tape_create(&tape, field, node, error));
+    hewn_interval *scratch = hewn_alloc(tape.count, sizeof *scratch);
     hewn_result result = HEWN_OK;
     if (scratch)
-        *out = hewn_program_bound(&program, box, scratch);
+        *out = hewn_tape_bound(&tape, box, scratch);
     else
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory bounding a field");
     hewn_free(scratch);
-    hewn_program_destroy(&program);
+    hewn_tape_destroy(&tape);
     return result;
 }

@@ -11,9 +11,10 @@
 /* Largest cube tried around the origin, in scene units. */
 #define LARGEST 0x1p20
 
-/* Node evaluations that one search may spend; at the least so many boxes, however large the graph. */
-#define BUDGET ((size_t)1 << 24)
-#define LEAST_BOXES 400
+/* Node evaluations that one search may spend; where the graph's shapes say nothing, at the least so many boxes, however
+ * large the graph. */
+#define BUDGET ((size_t)1 << 21)
+#define LEAST_BOXES 200
 
 #define LAYERS 32      /* slices of a side's length that shrinking takes off one by one */
 #define LAYER_DEPTH 10 /* halvings of such a slice: 32 by 32 cells */
@@ -21,7 +22,7 @@
 #define ROUNDS 12
 
 typedef struct box_search {
-    hewn_program program;
+    hewn_tape tape;
     hewn_interval *scratch;
     size_t boxes_left;
     double unit; /* lengths beyond it count by ratio; infinite where all count as they are */
@@ -73,7 +74,7 @@ static bool is_outside(box_search *search, const hewn_box *box, int depth)
     if (search->boxes_left == 0)
         return false;
     search->boxes_left--;
-    hewn_interval value = hewn_program_bound(&search->program, box, search->scratch);
+    hewn_interval value = hewn_tape_bound(&search->tape, box, search->scratch);
     if (value.lo > 0 && !value.maybe_nan)
         return true;
     if (depth == 0 || value.hi <= 0)
@@ -115,7 +116,7 @@ static bool cube_holds(box_search *search, const hewn_box *box, double radius)
  * and no one cube may use all of the rest. */
 static bool find_cube(box_search *search, hewn_box *box)
 {
-    size_t total = search->boxes_left;
+    size_t total = search->boxes_left < LEAST_BOXES ? LEAST_BOXES : search->boxes_left;
     size_t share = total / 40 + 8;
     size_t left = total;
     bool found = false;
@@ -124,7 +125,8 @@ static bool find_cube(box_search *search, hewn_box *box)
         radius *= 2;
         search->boxes_left = share;
         found = cube_holds(search, box, radius);
-        left -= share - search->boxes_left;
+        size_t spent = share - search->boxes_left;
+        left -= spent < left ? spent : left;
     }
     search->boxes_left = left;
     for (int i = 0; i < 3 && found; i++) {
@@ -197,7 +199,7 @@ static void inflate(hewn_box *box)
 static hewn_result search_box(box_search *search, const hewn_field *field, hewn_box *out, hewn_error *error)
 {
     hewn_region region;
-    HEWN_TRY(hewn_program_region(&search->program, field, &region, error));
+    HEWN_TRY(hewn_tape_region(&search->tape, field, &region, error));
     hewn_box box = region.box;
     bool empty = region.empty;
     for (int i = 0; i < 3; i++) {
@@ -221,15 +223,13 @@ hewn_result hewn_field_find_box(const hewn_field *field, hewn_node node, hewn_bo
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "hewn_field_find_box: no place for the box");
     *out = (hewn_box){{0, 0, 0}, {0, 0, 0}};
     box_search search = {.unit = 1};
-    HEWN_TRY(hewn_program_create(&search.program, field, node, error));
-    search.boxes_left = BUDGET / search.program.count;
-    if (search.boxes_left < LEAST_BOXES)
-        search.boxes_left = LEAST_BOXES;
-    search.scratch = hewn_alloc(search.program.count, sizeof *search.scratch);
+    HEWN_TRY(hewn_tape_create(&search.tape, field, node, error));
+    search.boxes_left = BUDGET / search.tape.count;
+    search.scratch = hewn_alloc(search.tape.count, sizeof *search.scratch);
     hewn_result result = search.scratch
                              ? search_box(&search, field, out, error)
                              : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory finding a box around a field");
     hewn_free(search.scratch);
-    hewn_program_destroy(&search.program);
+    hewn_tape_destroy(&search.tape);
     return result;
 }

@@ -33,22 +33,22 @@ hewn_result hewn_field_eval(const hewn_field *field, hewn_node node, const doubl
 {
     if (count > 0 && (!points || !values))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "hewn_field_eval: no points or no place for their values");
-    hewn_program program;
-    HEWN_TRY(hewn_program_create(&program, field, node, error));
-    size_t batch = batch_size(program.count);
-    double *scratch = hewn_alloc(program.count * batch, sizeof *scratch);
+    hewn_tape tape;
+    HEWN_TRY(hewn_tape_create(&tape, field, node, error));
+    size_t batch = batch_size(tape.count);
+    double *scratch = hewn_alloc(tape.count * batch, sizeof *scratch);
     if (!scratch) {
-        hewn_program_destroy(&program);
+        hewn_tape_destroy(&tape);
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory evaluating a field");
     }
     for (size_t first = 0; first < count; first += batch) {
         size_t taken = count - first < batch ? count - first : batch;
-        for (size_t i = 0; i < program.count; i++) {
-            double *out = i + 1 == program.count ? values + first : scratch + i * batch;
-            run_step(&program.steps[i], points + 3 * first, taken, batch, scratch, out);
+        for (size_t i = 0; i < tape.count; i++) {
+            double *out = i + 1 == tape.count ? values + first : scratch + i * batch;
+            run_step(&tape.steps[i], points + 3 * first, taken, batch, scratch, out);
         }
     }
     hewn_free(scratch);
-    hewn_program_destroy(&program);
+    hewn_tape_destroy(&tape);
     return HEWN_OK;
 }

@@ -252,22 +252,22 @@ hewn_result hewn_field_gradient(const hewn_field *field, hewn_node node, const d
 {
     if (count > 0 && (!points || !values_and_gradients))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "hewn_field_gradient: no points or no place for their values");
-    hewn_program program;
-    HEWN_TRY(hewn_program_create(&program, field, node, error));
-    dual *scratch = hewn_alloc(program.count, sizeof *scratch);
+    hewn_tape tape;
+    HEWN_TRY(hewn_tape_create(&tape, field, node, error));
+    dual *scratch = hewn_alloc(tape.count, sizeof *scratch);
     if (!scratch) {
-        hewn_program_destroy(&program);
+        hewn_tape_destroy(&tape);
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory evaluating a field");
     }
     for (size_t p = 0; p < count; p++) {
-        for (size_t i = 0; i < program.count; i++)
-            scratch[i] = run_step(&program.steps[i], points + 3 * p, scratch);
-        const dual *last = &scratch[program.count - 1];
+        for (size_t i = 0; i < tape.count; i++)
+            scratch[i] = run_step(&tape.steps[i], points + 3 * p, scratch);
+        const dual *last = &scratch[tape.count - 1];
         values_and_gradients[4 * p] = last->v;
         for (size_t i = 0; i < 3; i++)
             values_and_gradients[4 * p + 1 + i] = last->d[i];
     }
     hewn_free(scratch);
-    hewn_program_destroy(&program);
+    hewn_tape_destroy(&tape);
     return HEWN_OK;
 }

@@ -5,7 +5,8 @@
 #include "hewn/field.h"
 
 /* Each operation: enumerator, name in generated code and messages, operands, parameters. A shape's three operands are
- * its local coordinates. Everything that handles operations one by one is generated from, or tested against, this list. */
+ * its local coordinates. Everything that handles operations one by one is generated from, or tested against, this list.
+ */
 /* clang-format off */
 #define HEWN_OPS(op) \
     op(X, x, 0, 0) \

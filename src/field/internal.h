@@ -41,17 +41,17 @@ typedef struct hewn_step {
     uint32_t in[HEWN_MAX_OPERANDS]; /* positions of the operands' steps, HEWN_NO_ID where unused */
 } hewn_step;
 
-typedef struct hewn_program {
+typedef struct hewn_tape {
     hewn_step *steps;
     size_t count;
-} hewn_program;
+} hewn_tape;
 
 /* Valid until the field is changed. HEWN_INVALID_ARGUMENT for a node of no field. */
-hewn_result hewn_program_create(hewn_program *program, const hewn_field *field, hewn_node root, hewn_error *error);
-void hewn_program_destroy(hewn_program *program);
+hewn_result hewn_tape_create(hewn_tape *tape, const hewn_field *field, hewn_node root, hewn_error *error);
+void hewn_tape_destroy(hewn_tape *tape);
 
 /* Bounds of the last step over a box of finite or infinite sides; `scratch` has room for one interval a step. */
-hewn_interval hewn_program_bound(const hewn_program *program, const hewn_box *box, hewn_interval *scratch);
+hewn_interval hewn_tape_bound(const hewn_tape *tape, const hewn_box *box, hewn_interval *scratch);
 
 /* How much a blend takes from min(a, b) at most, where the two are equal. */
 double hewn_blend_depth(const hewn_node_data *node);
@@ -63,7 +63,7 @@ typedef struct hewn_region {
 } hewn_region;
 
 /* A region that contains every point where the last step is below 0, or 0, read off the shapes of the graph alone. */
-hewn_result hewn_program_region(const hewn_program *program, const hewn_field *field, hewn_region *out,
+hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out,
                                 hewn_error *error);
 
 #endif

@@ -63,31 +63,31 @@ static rule ask_both(rule_kind kind, const hewn_step *step, bool above, double l
     return (rule){kind, 2, {ask(step->in[0], above, level), ask(step->in[1], above, level)}};
 }
 
-static bool constant_of(const hewn_program *program, uint32_t step, double *value)
+static bool constant_of(const hewn_tape *tape, uint32_t step, double *value)
 {
-    const hewn_node_data *node = program->steps[step].node;
+    const hewn_node_data *node = tape->steps[step].node;
     *value = node->parameter[0];
     return node->op == HEWN_OP_CONSTANT && isfinite(*value);
 }
 
-static rule sum_rule(const hewn_program *program, const hewn_step *step, bool above, double level)
+static rule sum_rule(const hewn_tape *tape, const hewn_step *step, bool above, double level)
 {
     double value;
     bool minus = step->node->op == HEWN_OP_SUB;
-    if (constant_of(program, step->in[1], &value))
+    if (constant_of(tape, step->in[1], &value))
         return ask_one(ask(step->in[0], above, minus ? level + value : level - value));
-    if (constant_of(program, step->in[0], &value))
+    if (constant_of(tape, step->in[0], &value))
         return ask_one(minus ? ask(step->in[1], !above, value - level) : ask(step->in[1], above, level - value));
     return (rule){RULE_UNKNOWN, 0, {{0}}};
 }
 
-static rule product_rule(const hewn_program *program, const hewn_step *step, bool above, double level)
+static rule product_rule(const hewn_tape *tape, const hewn_step *step, bool above, double level)
 {
     double value;
     bool divides = step->node->op == HEWN_OP_DIV;
     uint32_t other = step->in[0];
-    bool known = constant_of(program, step->in[1], &value);
-    if (!known && !divides && constant_of(program, step->in[0], &value)) {
+    bool known = constant_of(tape, step->in[1], &value);
+    if (!known && !divides && constant_of(tape, step->in[0], &value)) {
         known = true;
         other = step->in[1];
     }
@@ -98,7 +98,7 @@ static rule product_rule(const hewn_program *program, const hewn_step *step, boo
 }
 
 /* How points of the children answer a question about the node. */
-static rule rule_of(const hewn_program *program, const hewn_step *step, bool above, double level)
+static rule rule_of(const hewn_tape *tape, const hewn_step *step, bool above, double level)
 {
     rule unknown = {RULE_UNKNOWN, 0, {{0}}};
     switch (step->node->op) {
@@ -112,9 +112,9 @@ static rule rule_of(const hewn_program *program, const hewn_step *step, bool abo
         return above ? ask_both(RULE_MEET, step, true, level)
                      : ask_both(RULE_HULL, step, false, level + hewn_blend_depth(step->node));
     case HEWN_OP_ADD:
-    case HEWN_OP_SUB: return sum_rule(program, step, above, level);
+    case HEWN_OP_SUB: return sum_rule(tape, step, above, level);
     case HEWN_OP_MUL:
-    case HEWN_OP_DIV: return product_rule(program, step, above, level);
+    case HEWN_OP_DIV: return product_rule(tape, step, above, level);
     case HEWN_OP_ABS:
         return above ? unknown : (rule){RULE_MEET, 2, {ask(step->in[0], false, level), ask(step->in[0], true, -level)}};
     case HEWN_OP_X:
@@ -269,13 +269,13 @@ static hewn_region combine(rule_kind kind, hewn_region a, hewn_region b)
     return a;
 }
 
-static void pass_questions(const hewn_program *program, answers *all, size_t at)
+static void pass_questions(const hewn_tape *tape, answers *all, size_t at)
 {
     for (int above = 0; above < 2; above++) {
         double level = all[at].level[above];
         if (isinf(level))
             continue;
-        rule r = rule_of(program, &program->steps[at], above, level);
+        rule r = rule_of(tape, &tape->steps[at], above, level);
         for (int i = 0; i < r.count; i++) {
             double *asked = &all[r.ask[i].step].level[r.ask[i].above];
             *asked = r.ask[i].above ? fmin(*asked, r.ask[i].level) : fmax(*asked, r.ask[i].level);
@@ -283,16 +283,16 @@ static void pass_questions(const hewn_program *program, answers *all, size_t at)
     }
 }
 
-static void answer_questions(const hewn_program *program, const hewn_field *field, answers *all, size_t at)
+static void answer_questions(const hewn_tape *tape, const hewn_field *field, answers *all, size_t at)
 {
-    const hewn_step *step = &program->steps[at];
+    const hewn_step *step = &tape->steps[at];
     for (int above = 0; above < 2; above++) {
         double level = all[at].level[above];
         hewn_region *out = &all[at].region[above];
         *out = everywhere();
         if (isinf(level))
             continue;
-        rule r = rule_of(program, step, above, level);
+        rule r = rule_of(tape, step, above, level);
         if (r.kind == RULE_LEAF)
             *out = leaf(field, step->node, above, level);
         for (int i = 0; i < r.count; i++) {
@@ -302,22 +302,22 @@ static void answer_questions(const hewn_program *program, const hewn_field *fiel
     }
 }
 
-hewn_result hewn_program_region(const hewn_program *program, const hewn_field *field, hewn_region *out,
+hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out,
                                 hewn_error *error)
 {
-    answers *all = hewn_alloc(program->count, sizeof *all);
+    answers *all = hewn_alloc(tape->count, sizeof *all);
     if (!all)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory finding a box around a field");
-    for (size_t i = 0; i < program->count; i++) {
+    for (size_t i = 0; i < tape->count; i++) {
         all[i].level[0] = -INFINITY;
         all[i].level[1] = INFINITY;
     }
-    all[program->count - 1].level[0] = 0;
-    for (size_t i = program->count; i-- > 0;)
-        pass_questions(program, all, i);
-    for (size_t i = 0; i < program->count; i++)
-        answer_questions(program, field, all, i);
-    *out = all[program->count - 1].region[0];
+    all[tape->count - 1].level[0] = 0;
+    for (size_t i = tape->count; i-- > 0;)
+        pass_questions(tape, all, i);
+    for (size_t i = 0; i < tape->count; i++)
+        answer_questions(tape, field, all, i);
+    *out = all[tape->count - 1].region[0];
     hewn_free(all);
     return HEWN_OK;
 }

@@ -95,7 +95,6 @@ uint64_t hewn_scan_scratch_bytes(uint64_t count)
 static void record_step(hewn_commands *commands, hewn_program *program, const hewn_buffer *levels, uint32_t level,
                         uint32_t count, struct hewn_scan_push push)
 {
-    push.stride = level == 0 ? 1 : 2;
     push.count = count;
     if (levels) {
         const uint64_t offset = level * sizeof(struct hewn_scan_level);
@@ -114,16 +113,22 @@ static void record_step(hewn_commands *commands, hewn_program *program, const he
 static void record_levels(hewn_scan *scan, hewn_commands *commands, const level_plan *plan, const hewn_buffer *levels,
                           uint64_t values, uint64_t total, uint64_t scratch)
 {
-    uint64_t address[HEWN_SCAN_LEVELS + 1];
-    for (uint32_t i = 0; i < plan->depth; i++)
-        address[i] = i == 0 ? values : scratch + plan->offsets[i];
-    address[plan->depth] = total;
+    uint64_t lows[HEWN_SCAN_LEVELS + 1], highs[HEWN_SCAN_LEVELS + 1];
+    lows[0] = values;
+    highs[0] = 0;
+    for (uint32_t i = 1; i < plan->depth; i++) {
+        lows[i] = scratch + plan->offsets[i];
+        highs[i] = lows[i] + (uint64_t)plan->counts[i] * 4;
+    }
+    lows[plan->depth] = total;
+    highs[plan->depth] = total + 4;
     for (uint32_t i = 0; i < plan->depth; i++)
         record_step(commands, scan->reduce, levels, i, plan->counts[i],
-                    (struct hewn_scan_push){.values = address[i], .sums = address[i + 1]});
+                    (struct hewn_scan_push){
+                        .values = lows[i], .highs = highs[i], .sums = lows[i + 1], .sum_highs = highs[i + 1]});
     for (uint32_t i = plan->depth; i-- > 0;)
         record_step(commands, scan->apply, levels, i, plan->counts[i],
-                    (struct hewn_scan_push){.values = address[i], .sums = i + 1 < plan->depth ? address[i + 1] : 0});
+                    (struct hewn_scan_push){.values = lows[i], .sums = i + 1 < plan->depth ? lows[i + 1] : 0});
 }
 
 void hewn_scan_record(hewn_scan *scan, hewn_commands *commands, uint64_t values, uint64_t count, uint64_t total,

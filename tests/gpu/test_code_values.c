@@ -94,15 +94,18 @@ static bool is_close(const hewn_node_data *node, const float *in, float value, d
     hewn_op op = node->op;
     if (isnan(expected))
         return isnan(value);
+    bool is_sum = op == HEWN_OP_AFFINE || op == HEWN_OP_PLANE;
+    if (is_sum && !isfinite(value) && !(size_of_all(node, in) < (double)FLT_MAX))
+        return true; /* a term overflows before the sum does */
     if (has_lengths(op) && fmax(fabs((double)in[0]), fmax(fabs((double)in[1]), fabs((double)in[2]))) > 9e18)
         return !isnan(value) || op == HEWN_OP_CONE;
-    if (fabs(expected) > (double)FLT_MAX * (1 - 16 * UNIT)) {
+    if ((op != HEWN_OP_MOD || isinf(expected)) && fabs(expected) > (double)FLT_MAX * (1 - 16 * UNIT)) {
         float end = expected > 0 ? FLT_MAX : -FLT_MAX;
         return isinf(expected) ? (double)value == expected
                                : value == 2 * end || fabs((double)value - (double)end) <= 32 * UNIT * (double)FLT_MAX;
     }
-    if (!isfinite(value)) /* a part overflows before the sum does */
-        return (op == HEWN_OP_AFFINE || op == HEWN_OP_PLANE) && !(fabs(size_of_all(node, in)) < (double)FLT_MAX);
+    if (!isfinite(value))
+        return false;
     bound bound = bound_of(op);
     double allowed = bound.units * UNIT * fabs(expected) + (double)FLT_MIN;
     if (bound.absolute > 0)

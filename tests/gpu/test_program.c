@@ -235,12 +235,14 @@ static void test_layouts(void **state)
     CHECK(scan_reduce, hewn_scan_push, sums);
     CHECK(scan_reduce, hewn_scan_push, counter);
     CHECK(scan_reduce, hewn_scan_push, count);
-    CHECK(scan_reduce, hewn_scan_push, stride);
+    CHECK(scan_reduce, hewn_scan_push, highs);
+    CHECK(scan_reduce, hewn_scan_push, sum_highs);
     CHECK(scan_apply, hewn_scan_push, values);
     CHECK(scan_apply, hewn_scan_push, sums);
     CHECK(scan_apply, hewn_scan_push, counter);
     CHECK(scan_apply, hewn_scan_push, count);
-    CHECK(scan_apply, hewn_scan_push, stride);
+    CHECK(scan_apply, hewn_scan_push, highs);
+    CHECK(scan_apply, hewn_scan_push, sum_highs);
     CHECK(scan_prepare, hewn_scan_prepare_push, counter);
     CHECK(scan_prepare, hewn_scan_prepare_push, levels);
     CHECK(scan_prepare, hewn_scan_prepare_push, capacity);

@@ -99,8 +99,7 @@ static void sets_of_shapes(void **state)
     hewn_node ball = hewn_sphere(f, 1), far = hewn_translate(f, hewn_sphere(f, 0.5), 2, 0, 0);
     exact_box(check_box(f, hewn_union(f, ball, far), 3, 1.1), (double[]){-1, -1, -1}, (double[]){2.5, 1, 1});
     hewn_node half = hewn_plane(f, 1, 0, 0, 0.25);
-    exact_box(check_box(f, hewn_intersection(f, ball, half), 1.5, 1.1), (double[]){-1, -1, -1},
-              (double[]){0.25, 1, 1});
+    exact_box(check_box(f, hewn_intersection(f, ball, half), 1.5, 1.1), (double[]){-1, -1, -1}, (double[]){0.25, 1, 1});
     /* Six planes make a box, although each is infinite. */
     hewn_node cube = hewn_plane(f, 1, 0, 0, 1);
     const double normals[5][3] = {{-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 2}, {0, 0, -3}};
@@ -121,7 +120,8 @@ static void sets_of_shapes(void **state)
     exact_box(check_box(f, hewn_neg(f, hewn_div(f, ball, hewn_constant(f, -2))), 1.5, 1.1), (double[]){-1, -1, -1},
               (double[]){1, 1, 1});
     /* A cut that takes one side away: the proof by intervals sees it. */
-    hewn_node cut = hewn_difference(f, hewn_box_shape(f, 2, 2, 2), hewn_translate(f, hewn_box_shape(f, 2, 4, 4), 1, 0, 0));
+    hewn_node cut =
+        hewn_difference(f, hewn_box_shape(f, 2, 2, 2), hewn_translate(f, hewn_box_shape(f, 2, 4, 4), 1, 0, 0));
     assert_true(check_box(f, cut, 1.5, 1.2).hi[0] < 0.1);
     hewn_field_destroy(&f);
 }
@@ -144,7 +144,8 @@ static void blends_reach_further(void **state)
     }
 }
 
-/* --- plain arithmetic ---------------------------------------------------------------------------------------------- */
+/* --- plain arithmetic ----------------------------------------------------------------------------------------------
+ */
 
 static hewn_node number(hewn_field *f, double value)
 {
@@ -227,8 +228,9 @@ static void mixes_of_shapes_and_arithmetic(void **state)
     (void)state;
     hewn_field *f = new_field();
     check_box(f, hewn_union(f, csg(f), hewn_translate(f, hewn_sphere(f, 0.3), 1, 1, 1)), 1.6, 1.2);
-    check_box(f, hewn_smooth_union(f, gyroid(f), hewn_rotate(f, hewn_box_shape(f, 2, 0.4, 0.4), 1, 1, 1, 0.5),
-                                   HEWN_BLEND_CIRCULAR, 0.2),
+    check_box(f,
+              hewn_smooth_union(f, gyroid(f), hewn_rotate(f, hewn_box_shape(f, 2, 0.4, 0.4), 1, 1, 1, 0.5),
+                                HEWN_BLEND_CIRCULAR, 0.2),
               1.5, 1.3);
     check_box(f, hewn_translate(f, hewn_rotate(f, csg(f), 1, 2, 3, 1), 0.2, -0.1, 0.3), 1.6, 1.5);
     check_box(f, hewn_intersection(f, waves(f), hewn_cylinder(f, 0.7, 1)), 1, 1.2);
@@ -271,7 +273,8 @@ static void what_has_no_box_is_refused(void **state)
                         apart,
                         diagonal,
                         hewn_sqrt(f, hewn_sub(f, hewn_constant(f, -1), hewn_square(f, hewn_x(f))))};
-    const char *word[] = {"bounds", "bounds", "bounds", "empty", "bounds", "bounds", "bounds", "empty", "empty", "bounds"};
+    const char *word[] = {"bounds", "bounds", "bounds", "empty", "bounds",
+                          "bounds", "bounds", "empty",  "empty", "bounds"};
     assert_field_ok(f);
     for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
         hewn_box box = {{1, 1, 1}, {2, 2, 2}};
@@ -312,8 +315,9 @@ static void random_sets_stay_in_their_box(void **state)
                   : how == 0 ? hewn_union(f, all, one)
                   : how == 1 ? hewn_difference(f, all, one)
                   : how == 2 ? hewn_smooth_difference(f, all, one, blend, size)
-                  : how == 3 ? hewn_sub(f, hewn_union(f, all, one), hewn_constant(f, random_between(&random, -0.2, 0.3)))
-                             : hewn_smooth_union(f, all, one, blend, size);
+                  : how == 3
+                      ? hewn_sub(f, hewn_union(f, all, one), hewn_constant(f, random_between(&random, -0.2, 0.3)))
+                      : hewn_smooth_union(f, all, one, blend, size);
         }
         assert_field_ok(f);
         hewn_box box;
@@ -333,12 +337,9 @@ static void random_sets_stay_in_their_box(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shapes_have_their_own_box),
-        cmocka_unit_test(sets_of_shapes),
-        cmocka_unit_test(blends_reach_further),
-        cmocka_unit_test(shipped_scenes_in_plain_arithmetic),
-        cmocka_unit_test(mixes_of_shapes_and_arithmetic),
-        cmocka_unit_test(what_has_no_box_is_refused),
+        cmocka_unit_test(shapes_have_their_own_box),      cmocka_unit_test(sets_of_shapes),
+        cmocka_unit_test(blends_reach_further),           cmocka_unit_test(shipped_scenes_in_plain_arithmetic),
+        cmocka_unit_test(mixes_of_shapes_and_arithmetic), cmocka_unit_test(what_has_no_box_is_refused),
         cmocka_unit_test(random_sets_stay_in_their_box),
     };
     return cmocka_run_group_tests_name("field_box", tests, NULL, NULL);

@@ -105,7 +105,8 @@ static void names_and_infos_match(void **state)
     assert_int_equal(hewn_op_infos[HEWN_OP_ROUNDED_BOX].parameters, 4);
 }
 
-/* --- shapes -------------------------------------------------------------------------------------------------------- */
+/* --- shapes --------------------------------------------------------------------------------------------------------
+ */
 
 /* Whether a point is in a shape, by its plain description (half sizes as in the node). */
 static bool inside(hewn_op op, const double *p, const double *at)
@@ -214,7 +215,8 @@ static void builders_take_full_sizes(void **state)
     hewn_field_destroy(&f);
 }
 
-/* --- blends -------------------------------------------------------------------------------------------------------- */
+/* --- blends --------------------------------------------------------------------------------------------------------
+ */
 
 static double blend_reference(hewn_blend blend, double k, double a, double b)
 {
@@ -283,7 +285,8 @@ static void blends_survive_far_operands(void **state)
     hewn_field_destroy(&f);
 }
 
-/* --- gradients ----------------------------------------------------------------------------------------------------- */
+/* --- gradients -----------------------------------------------------------------------------------------------------
+ */
 
 /* Where two step sizes agree on the slope, it is the gradient's. */
 static void check_gradient(const hewn_field *f, hewn_node node, const double *at, int *checked)
@@ -371,8 +374,9 @@ static void ties_take_the_first_operand(void **state)
     assert_true(out[1] == 0 && out[2] == 1);
     /* A centre and an axis have no gradient, but no NaN either; a face has its own. */
     const double centre[3] = {0, 0, 0}, face[3] = {0.5, 0.1, 0.1};
-    hewn_node shapes[] = {hewn_sphere(f, 1), hewn_torus(f, 1, 0.2), hewn_cylinder(f, 1, 1), hewn_capsule(f, 1, 1),
-                          hewn_cone(f, 1, 0.5, 1), hewn_box_shape(f, 1, 1, 1), hewn_rounded_box(f, 1, 1, 1, 0.1)};
+    hewn_node shapes[] = {
+        hewn_sphere(f, 1),       hewn_torus(f, 1, 0.2),      hewn_cylinder(f, 1, 1),           hewn_capsule(f, 1, 1),
+        hewn_cone(f, 1, 0.5, 1), hewn_box_shape(f, 1, 1, 1), hewn_rounded_box(f, 1, 1, 1, 0.1)};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         hewn_field_gradient(f, shapes[i], centre, 1, out, NULL);
         assert_true(isfinite(out[1]) && isfinite(out[2]) && isfinite(out[3]));
@@ -382,7 +386,8 @@ static void ties_take_the_first_operand(void **state)
     hewn_field_destroy(&f);
 }
 
-/* --- moving -------------------------------------------------------------------------------------------------------- */
+/* --- moving --------------------------------------------------------------------------------------------------------
+ */
 
 static void moved_shapes_are_shapes_at_moved_points(void **state)
 {
@@ -398,12 +403,11 @@ static void moved_shapes_are_shapes_at_moved_points(void **state)
         double moved = value_at(f, hewn_translate(f, shape, t[0], t[1], t[2]), q[0] + t[0], q[1] + t[1], q[2] + t[2]);
         double scaled = value_at(f, hewn_scale(f, shape, s), s * q[0], s * q[1], s * q[2]);
         double least = fmin(s, fmin(2 * s, 3 * s));
-        double stretched =
-            value_at(f, hewn_stretch(f, shape, 2 * s, s, 3 * s), 2 * s * q[0], s * q[1], 3 * s * q[2]);
+        double stretched = value_at(f, hewn_stretch(f, shape, 2 * s, s, 3 * s), 2 * s * q[0], s * q[1], 3 * s * q[2]);
         /* A turn about z by the right-hand rule takes x towards y. */
         double angle = random_between(&random, -4, 4), c = cos(angle), n = sin(angle);
-        double turned = value_at(f, hewn_rotate(f, shape, 0, 0, 2, angle), c * q[0] - n * q[1], n * q[0] + c * q[1],
-                                 q[2]);
+        double turned =
+            value_at(f, hewn_rotate(f, shape, 0, 0, 2, angle), c * q[0] - n * q[1], n * q[0] + c * q[1], q[2]);
         assert_field_ok(f);
         double out[4];
         hewn_field_gradient(f, shape, q, 1, out, NULL);

@@ -200,10 +200,10 @@ static hewn_node no_operation(hewn_field *f)
 static void what_makes_no_sense_is_refused_and_remembered(void **state)
 {
     (void)state;
-    static const builder bad[] = {bad_sphere,   nan_sphere, flat_box,   huge_box,        over_rounded,  bad_torus,
-                                  bad_cylinder, bad_capsule, bad_cone,  bad_plane,       bad_scale,     bad_stretch,
-                                  bad_axis,     bad_angle,  bad_move,   bad_size,        bad_k,         bad_blend,
-                                  no_operand,   foreign_operand,        no_coordinate,   no_operation};
+    static const builder bad[] = {bad_sphere,   nan_sphere,      flat_box,      huge_box,    over_rounded, bad_torus,
+                                  bad_cylinder, bad_capsule,     bad_cone,      bad_plane,   bad_scale,    bad_stretch,
+                                  bad_axis,     bad_angle,       bad_move,      bad_size,    bad_k,        bad_blend,
+                                  no_operand,   foreign_operand, no_coordinate, no_operation};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         hewn_field *f = new_field();
         hewn_node node = bad[i](f);

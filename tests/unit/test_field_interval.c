@@ -31,7 +31,7 @@ static void bounds_contain_every_operation(void **state)
     (void)state;
     random_state random = {21};
     for (hewn_op op = HEWN_OP_X; op < HEWN_OP_COUNT; op++)
-        for (int round = 0; round < effort(3000); round++) {
+        for (int round = 0; round < effort(1000); round++) {
             hewn_field *f = new_field();
             hewn_node_data data = {.op = op, .operand = {0, 1, 2}};
             random_parameters(&random, op, data.parameter);
@@ -53,7 +53,7 @@ static void bounds_contain_remainders(void **state)
 {
     (void)state;
     random_state random = {22};
-    for (int round = 0; round < effort(20000); round++) {
+    for (int round = 0; round < effort(5000); round++) {
         hewn_field *f = new_field();
         double period = random_below(&random, 3) ? random_between(&random, -3, 3) : random_awkward(&random);
         hewn_node node = hewn_mod(f, hewn_x(f), hewn_constant(f, period));
@@ -67,7 +67,7 @@ static void bounds_contain_random_graphs(void **state)
 {
     (void)state;
     random_state random = {23};
-    int useful = 0, rounds = effort(3000);
+    int useful = 0, rounds = effort(1000);
     for (int round = 0; round < rounds; round++) {
         hewn_field *f = new_field();
         hewn_node root = random_graph(&random, f, 4 + (int)random_below(&random, 196), round % 2 == 0);

@@ -47,10 +47,9 @@ static inline uint32_t random_below(random_state *random, uint32_t count)
 /* A number of the kinds that arithmetic trips over. */
 static inline double random_awkward(random_state *random)
 {
-    static const double special[] = {0.0,     -0.0,     1,    -1,   0.5,       -0.5,      M_PI_2, -M_PI_2,
-                                     M_PI,    -M_PI,    3,    -3,   INFINITY,  -INFINITY, 1e300,  -1e300,
-                                     1e-310,  -1e-310,  1e18, -1e6, DBL_MAX,   -DBL_MAX,  1e-160, -1e-160,
-                                     1.5,     -2.5,     2,    -2};
+    static const double special[] = {
+        0.0,   -0.0,   1,      -1,      0.5,  -0.5, M_PI_2,  -M_PI_2,  M_PI,   -M_PI,   3,   -3,   INFINITY, -INFINITY,
+        1e300, -1e300, 1e-310, -1e-310, 1e18, -1e6, DBL_MAX, -DBL_MAX, 1e-160, -1e-160, 1.5, -2.5, 2,        -2};
     switch (random_below(random, 4)) {
     case 0: return special[random_below(random, sizeof special / sizeof *special)];
     case 1: return random_between(random, -2, 2);

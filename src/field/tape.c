@@ -2,9 +2,9 @@
 #include "base/error.h"
 #include "field/internal.h"
 
-hewn_result hewn_program_create(hewn_program *program, const hewn_field *field, hewn_node root, hewn_error *error)
+hewn_result hewn_tape_create(hewn_tape *tape, const hewn_field *field, hewn_node root, hewn_error *error)
 {
-    *program = (hewn_program){0};
+    *tape = (hewn_tape){0};
     uint32_t *ids = NULL;
     size_t count = 0;
     HEWN_TRY(hewn_field_live_nodes(field, root, &ids, &count, error));
@@ -25,13 +25,13 @@ hewn_result hewn_program_create(hewn_program *program, const hewn_field *field, 
     }
     hewn_free(ids);
     hewn_free(position);
-    program->steps = steps;
-    program->count = count;
+    tape->steps = steps;
+    tape->count = count;
     return HEWN_OK;
 }
 
-void hewn_program_destroy(hewn_program *program)
+void hewn_tape_destroy(hewn_tape *tape)
 {
-    hewn_free(program->steps);
-    *program = (hewn_program){0};
+    hewn_free(tape->steps);
+    *tape = (hewn_tape){0};
 }
