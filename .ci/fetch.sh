@@ -5,7 +5,7 @@ set -euo pipefail
 
 validator_package=gltf-validator@2.0.0-dev.3.10
 swiftshader_package=@sparticuz/chromium@153.0.0
-cache=${XDG_CACHE_HOME:-$HOME/.cache}/hewn-dev
+cache=${HEWN_DEV_CACHE:?is set by ./dev}
 
 skip() {
     printf '%s\n' "$1" >&2

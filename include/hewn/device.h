@@ -46,8 +46,8 @@ typedef struct hewn_device_desc {
 } hewn_device_desc;
 
 /* Lists devices, best first: discrete, integrated, virtual, CPU; ties by the loader's order. `*infos` is owned by the
- * caller (hewn_device_list_free). HEWN_NO_LOADER where no Vulkan loader is installed; no device at all is HEWN_OK with
- * a count of 0. */
+ * caller (hewn_device_list_free). HEWN_NO_LOADER where no Vulkan loader is installed (libvulkan.so.1, or what the
+ * environment variable HEWN_VULKAN_LOADER names); no device at all is HEWN_OK with a count of 0. */
 HEWN_API hewn_result hewn_device_list(hewn_device_info **infos, size_t *count, hewn_error *error);
 HEWN_API void hewn_device_list_free(hewn_device_info **infos);
 

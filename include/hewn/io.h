@@ -29,13 +29,15 @@ typedef struct hewn_mesh_write_desc {
 } hewn_mesh_write_desc;
 
 /* Writes a mesh under a temporary name and renames it over `path` ("-" is standard output, not for GLB). Same bytes for
- * the same input. HEWN_LIMIT where the format cannot hold it, before anything is written; HEWN_IO; HEWN_CANCELLED. */
+ * the same input. HEWN_LIMIT where the format cannot hold it, before anything is written; HEWN_BAD_INPUT for an
+ * index out of range or a number that is not finite; HEWN_IO; HEWN_CANCELLED. `desc` may be NULL; the stage is "write".
+ */
 HEWN_API hewn_result hewn_mesh_write(const hewn_triangles *triangles, const char *path,
                                      const hewn_mesh_write_desc *desc, hewn_error *error);
 
-/* Reads a mesh file by its extension into triangles (polygons are cut into fans; STL's equal positions are welded; GLB
- * comes back in the file's own coordinates). HEWN_BAD_INPUT says where and why; memory stays in proportion to the file.
- */
+/* Reads a mesh file by its extension, those above or .gltf, into triangles: polygons are cut into fans, STL's equal
+ * positions are welded, glTF's nodes are placed and the result stays in metres and +Y up. Normals are kept where each
+ * vertex has exactly one. HEWN_BAD_INPUT says where and why; memory stays in proportion to the file. */
 HEWN_API hewn_result hewn_mesh_read(const char *path, hewn_triangles *out, hewn_error *error);
 
 #ifdef __cplusplus

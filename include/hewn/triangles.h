@@ -22,11 +22,12 @@ typedef struct hewn_triangles {
 
 HEWN_API void hewn_triangles_destroy(hewn_triangles *triangles);
 
-/* What was proven of a mesh. */
+/* What was proven of a mesh. A face with two equal corners has no sides: it counts as degenerate and in the bounds, and
+ * takes no part in edges, vertices and components. A mesh without faces is closed, manifold and oriented. */
 typedef struct hewn_certificate {
-    bool closed;         /* every edge has a face on both sides */
-    bool manifold;       /* no edge has more than two faces, the faces at each vertex form one fan or one ring */
-    bool oriented;       /* the two faces of each edge run along it in opposite directions */
+    bool closed;   /* every edge has a face on both sides */
+    bool manifold; /* no edge has more than two faces, the faces at each vertex form one fan or one ring */
+    bool oriented; /* the two faces of each edge run along it in opposite directions; of more faces, half each way */
     uint64_t components; /* of faces joined at shared vertices; isolated vertices do not count */
     int64_t genus;       /* of all components together; -1 where the mesh is not closed, manifold and oriented */
     uint64_t boundary_edges;
@@ -40,7 +41,8 @@ typedef struct hewn_certificate {
 } hewn_certificate;
 
 /* Examines triangles. Linear in their number, deterministic (sums in a fixed order). HEWN_BAD_INPUT for an index out of
- * range or a position that is not finite, naming the first; HEWN_OUT_OF_MEMORY. `progress` may be NULL. */
+ * range or a position that is not finite, naming the first; HEWN_LIMIT for 2^32 or more corners or
+ * vertices; HEWN_OUT_OF_MEMORY. `progress` may be NULL, its stage is "certify". */
 HEWN_API hewn_result hewn_certify(const hewn_triangles *triangles, const hewn_progress *progress, hewn_certificate *out,
                                   hewn_error *error);
 

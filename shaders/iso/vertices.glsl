@@ -43,7 +43,7 @@ float crossing(vec3 start, uint axis, float side, float at_start, float at_end)
         float moved = abs(next - guess);
         guess = next;
         float value = value_along(start, axis, side, next);
-        if (value == 0.0 || (moved < 1.0e-4 && trial > 0u) || b - a < 2.0e-6)
+        if (value == 0.0 || (moved < 2.0e-5 && trial > 0u) || b - a < 2.0e-6)
             break;
         if ((value < 0.0) == start_inside) {
             a = next;

@@ -1,6 +1,6 @@
-/* What the host and the prefix sum's shaders agree on. A level is an array to be summed; each block of it gives one value of
- * the level above. Level 0 holds the caller's 32-bit values; in the others the high words of sums stand in an array of their
- * own, since sums may pass 2^32. */
+/* What the host and the prefix sum's shaders agree on. A level is an array to be summed; each block of it gives one
+ * value of the level above. Level 0 holds the caller's 32-bit values; in the others the high words of sums stand in an
+ * array of their own, since sums may pass 2^32. */
 #ifndef HEWN_SHADERS_SHARED_SCAN_H
 #define HEWN_SHADERS_SHARED_SCAN_H
 
@@ -19,9 +19,9 @@ struct hewn_scan_level {
 };
 
 struct hewn_scan_push {
-    HEWN_UINTS values;   /* the level: low words */
-    HEWN_UINTS highs;    /* high words of the level, or 0 where all are zero; only reduce looks at them */
-    HEWN_UINTS sums;     /* the level above: written by reduce, read by apply; none (0) at the top of apply */
+    HEWN_UINTS values; /* the level: low words */
+    HEWN_UINTS highs;  /* high words of the level, or 0 where all are zero; only reduce looks at them */
+    HEWN_UINTS sums;   /* the level above: written by reduce, read by apply; none (0) at the top of apply */
     HEWN_UINTS sum_highs;
     HEWN_UINTS counter; /* where the count stands, or 0: then it is `count` */
     HEWN_UINT count;

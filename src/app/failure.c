@@ -40,7 +40,9 @@ int hewn_report_misuse(const hewn_command *command, const hewn_error *error)
     const char *space = command ? " " : "", *name = command ? command->name : "";
     if (error->code != HEWN_INVALID_ARGUMENT)
         return hewn_report_failure(error);
-    fprintf(stderr, "hewn%s%s: %s\nTry 'hewn%s%s --help'.\n", space, name, error->message, space, name);
+    bool at_file = error->file[0] != '\0';
+    fprintf(stderr, "hewn%s%s: %s%s%s\nTry 'hewn%s%s --help'.\n", space, name, error->file, at_file ? ": " : "",
+            error->message, space, name);
     return hewn_exit_code(error->code);
 }
 

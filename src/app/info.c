@@ -268,7 +268,7 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
     } else {
         result = mesh ? tell_mesh(scene.desc.path, json, &error) : tell_scene(&scene.desc, json, &error);
         if (result != HEWN_OK)
-            code = hewn_report_failure(&error);
+            code = hewn_report_misuse(command, &error);
     }
     hewn_scene_arguments_destroy(&scene);
     return code;

@@ -36,12 +36,10 @@ hewn_result hewn_count_parse(const char *text, const char *option, uint32_t leas
     bool negative = text[0] == '-' && length > 1 && strspn(text + 1, "0123456789") == length - 1;
     if (!negative && (length == 0 || digits != length))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s takes a whole number, not '%s'", option, text);
-    unsigned long long value = negative ? 0 : strtoull(text, NULL, 10); /* saturates */
+    unsigned long long value = negative ? 0 : strtoull(text, NULL, 10); /* ULLONG_MAX where it is more */
     if (negative || value < least)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s must be at least %u, not %s", option, least, text);
-    if (value > UINT32_MAX)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s is at most %u, not %s", option, UINT32_MAX, text);
-    *out = (uint32_t)value;
+    *out = value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
     return HEWN_OK;
 }
 

@@ -7,7 +7,8 @@
 /* `option` is how messages call it ("--cell"). HEWN_INVALID_ARGUMENT with what was given and what is wanted. */
 hewn_result hewn_number_parse(const char *text, const char *option, double *out, hewn_error *error);
 
-/* A whole number from `least` to UINT32_MAX. */
+/* A whole number from `least` on; UINT32_MAX stands for all that are larger, so that whoever knows the real limit can
+ * refuse them. */
 hewn_result hewn_count_parse(const char *text, const char *option, uint32_t least, uint32_t *out, hewn_error *error);
 
 /* "x0,y0,z0,x1,y1,z1" */

@@ -63,7 +63,6 @@ typedef struct hewn_region {
 } hewn_region;
 
 /* A region that contains every point where the last step is below 0, or 0, read off the shapes of the graph alone. */
-hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out,
-                                hewn_error *error);
+hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out, hewn_error *error);
 
 #endif

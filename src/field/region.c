@@ -302,8 +302,7 @@ static void answer_questions(const hewn_tape *tape, const hewn_field *field, ans
     }
 }
 
-hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out,
-                                hewn_error *error)
+hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out, hewn_error *error)
 {
     answers *all = hewn_alloc(tape->count, sizeof *all);
     if (!all)

@@ -109,8 +109,8 @@ static bool grow_sets(hewn_commands *commands)
 {
     hewn_device *device = commands->device;
     void *pools = commands->pools, *sets = commands->sets;
-    hewn_result room = hewn_reserve(&pools, &commands->pool_capacity, commands->pool_count + 1, sizeof *commands->pools,
-                                    &commands->reason);
+    hewn_result room = hewn_reserve(&pools, &commands->pool_capacity, commands->pool_count + 1,
+                                    sizeof(VkDescriptorPool), &commands->reason);
     commands->pools = pools;
     if (room == HEWN_OK)
         room = hewn_reserve(&sets, &commands->set_capacity, commands->set_count + SETS_A_POOL, sizeof *commands->sets,

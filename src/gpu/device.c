@@ -118,6 +118,12 @@ static void read_limits(hewn_device *device)
     key = hewn_hash_bytes(key, all.properties.pipelineCacheUUID, sizeof all.properties.pipelineCacheUUID);
     key = hewn_hash_bytes(key, &all.properties.driverVersion, sizeof all.properties.driverVersion);
     device->pipeline_key = hewn_hash_bytes(key, &all.properties.deviceID, sizeof all.properties.deviceID);
+    VkPipelineCacheHeaderVersionOne *header = &device->pipeline_header;
+    header->headerSize = sizeof *header;
+    header->headerVersion = VK_PIPELINE_CACHE_HEADER_VERSION_ONE;
+    header->vendorID = all.properties.vendorID;
+    header->deviceID = all.properties.deviceID;
+    memcpy(header->pipelineCacheUUID, all.properties.pipelineCacheUUID, sizeof header->pipelineCacheUUID);
 }
 
 static hewn_result fill_table(hewn_device *device, hewn_error *error)

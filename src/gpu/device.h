@@ -51,8 +51,9 @@ struct hewn_device {
     hewn_vulkan_device_table vk;
     VkDescriptorSetLayout uniform_layout;
     VkPipelineCache pipeline_cache;
-    size_t pipeline_cache_bytes; /* what the disk holds already */
+    size_t pipeline_cache_bytes; /* as the driver counted them when the cache was new */
     hewn_hash pipeline_key;
+    VkPipelineCacheHeaderVersionOne pipeline_header; /* how the driver's data must begin */
     hewn_cache cache;
     uint64_t bytes, peak_bytes;
     struct hewn_commands commands; /* the one recording, used again and again */

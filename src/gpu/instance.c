@@ -20,26 +20,33 @@ static PFN_vkGetInstanceProcAddr find_entry(void *library)
     return entry;
 }
 
-static hewn_result open_library(hewn_instance *instance, PFN_vkGetInstanceProcAddr *entry, hewn_error *error)
+/* NULL after a failure, which is HEWN_NO_LOADER. */
+static PFN_vkGetInstanceProcAddr open_library(hewn_instance *instance, hewn_error *error)
 {
     const char *named = secure_getenv("HEWN_VULKAN_LOADER");
     const char *name = named && *named ? named : "libvulkan.so.1";
     instance->library = dlopen(name, RTLD_NOW | RTLD_LOCAL);
-    if (!instance->library)
-        return hewn_fail(error, HEWN_NO_LOADER,
-                         "no Vulkan loader on this machine (%s could not be opened); on Debian: apt-get install "
-                         "libvulkan1 mesa-vulkan-drivers",
-                         name);
-    *entry = find_entry(instance->library);
-    if (!*entry)
-        return hewn_fail(error, HEWN_NO_LOADER, "%s is no Vulkan loader (it lacks vkGetInstanceProcAddr)", name);
+    if (!instance->library) {
+        hewn_fail(error, HEWN_NO_LOADER,
+                  "no Vulkan loader on this machine (%s could not be opened); on Debian: apt-get install "
+                  "libvulkan1 mesa-vulkan-drivers",
+                  name);
+        return NULL;
+    }
+    PFN_vkGetInstanceProcAddr entry = find_entry(instance->library);
+    if (!entry) {
+        hewn_fail(error, HEWN_NO_LOADER, "%s is no Vulkan loader (it lacks vkGetInstanceProcAddr)", name);
+        return NULL;
+    }
     /* A loader of Vulkan 1.0 has no vkEnumerateInstanceVersion and refuses every later apiVersion. */
     PFN_vkEnumerateInstanceVersion version_of =
-        (PFN_vkEnumerateInstanceVersion)(*entry)(NULL, "vkEnumerateInstanceVersion");
+        (PFN_vkEnumerateInstanceVersion)entry(NULL, "vkEnumerateInstanceVersion");
     uint32_t version = 0;
-    if (!version_of || version_of(&version) != VK_SUCCESS || version < VK_API_VERSION_1_2)
-        return hewn_fail(error, HEWN_NO_LOADER, "the Vulkan loader %s is older than Vulkan 1.2", name);
-    return HEWN_OK;
+    if (!version_of || version_of(&version) != VK_SUCCESS || version < VK_API_VERSION_1_2) {
+        hewn_fail(error, HEWN_NO_LOADER, "the Vulkan loader %s is older than Vulkan 1.2", name);
+        return NULL;
+    }
+    return entry;
 }
 
 static bool has_layer(PFN_vkGetInstanceProcAddr entry)
@@ -98,14 +105,20 @@ static VkResult create_handle(PFN_vkGetInstanceProcAddr entry, hewn_messages *me
                                            .pEngineName = "hewn",
                                            .apiVersion = VK_API_VERSION_1_2};
     const char *layers[] = {validation_layer};
-    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    /* Missing barriers rarely show on the machine at hand, so the layer looks for them. */
+    const VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    const VkValidationFeaturesEXT features = {.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                              .enabledValidationFeatureCount = 1,
+                                              .pEnabledValidationFeatures = enables};
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(messages);
     VkInstanceCreateInfo info = {.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, .pApplicationInfo = &application};
     if (messages) {
+        messenger.pNext = &features;
         info.pNext = &messenger;
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = layers;
-        info.enabledExtensionCount = 1;
+        info.enabledExtensionCount = 2;
         info.ppEnabledExtensionNames = extensions;
     }
     return create(&info, NULL, out);
@@ -139,8 +152,9 @@ static hewn_result create_messenger(hewn_instance *instance, PFN_vkGetInstancePr
 
 static hewn_result open_all(hewn_instance *instance, hewn_messages *messages, hewn_error *error)
 {
-    PFN_vkGetInstanceProcAddr entry = NULL;
-    HEWN_TRY(open_library(instance, &entry, error));
+    PFN_vkGetInstanceProcAddr entry = open_library(instance, error);
+    if (!entry)
+        return HEWN_NO_LOADER;
     if (messages && !has_layer(entry))
         return hewn_fail(error, HEWN_NO_DEVICE,
                          "the validation layer %s is not installed; on Debian: apt-get install "

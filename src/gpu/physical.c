@@ -108,41 +108,47 @@ static void sort_by_kind(VkPhysicalDevice *handles, hewn_device_info *infos, siz
         infos[i].index = (uint32_t)i;
 }
 
+/* Some loaders report a machine without devices as a failure to initialise. */
+static hewn_result count_devices(const hewn_instance *instance, uint32_t *count, hewn_error *error)
+{
+    *count = 0;
+    if (instance->driverless)
+        return HEWN_OK;
+    VkResult result = instance->vk.EnumeratePhysicalDevices(instance->handle, count, NULL);
+    if (result != VK_ERROR_INITIALIZATION_FAILED)
+        return hewn_vulkan_check(result, "listing the devices", error);
+    *count = 0;
+    return HEWN_OK;
+}
+
 hewn_result hewn_physical_list(const hewn_instance *instance, VkPhysicalDevice **handles, hewn_device_info **infos,
                                size_t *count, hewn_error *error)
 {
     *handles = NULL;
     *infos = NULL;
     *count = 0;
-    uint32_t found = 0;
-    if (!instance->driverless) {
-        VkResult result = instance->vk.EnumeratePhysicalDevices(instance->handle, &found, NULL);
-        /* Some loaders report a machine without devices this way. */
-        if (result == VK_ERROR_INITIALIZATION_FAILED)
-            found = 0;
-        else
-            HEWN_TRY(hewn_vulkan_check(result, "listing the devices", error));
-    }
+    uint32_t found;
+    HEWN_TRY(count_devices(instance, &found, error));
     if (found == 0)
         return HEWN_OK;
-    *handles = hewn_alloc_zero(found, sizeof **handles);
-    *infos = hewn_alloc_zero(found, sizeof **infos);
-    hewn_result result = HEWN_OK;
-    if (!*handles || !*infos)
-        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %u devices", found);
-    else
-        result = hewn_vulkan_check(instance->vk.EnumeratePhysicalDevices(instance->handle, &found, *handles),
+    VkPhysicalDevice *devices = hewn_alloc_zero(found, sizeof(VkPhysicalDevice));
+    hewn_device_info *described = hewn_alloc_zero(found, sizeof(hewn_device_info));
+    hewn_result result = HEWN_OUT_OF_MEMORY;
+    if (devices && described)
+        result = hewn_vulkan_check(instance->vk.EnumeratePhysicalDevices(instance->handle, &found, devices),
                                    "listing the devices", error);
-    if (result != HEWN_OK) {
-        hewn_free(*handles);
-        hewn_free(*infos);
-        *handles = NULL;
-        *infos = NULL;
+    else
+        hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %u devices", found);
+    if (result != HEWN_OK || !devices || !described) {
+        hewn_free(devices);
+        hewn_free(described);
         return result;
     }
     for (uint32_t i = 0; i < found; i++)
-        describe(instance, (*handles)[i], &(*infos)[i]);
-    sort_by_kind(*handles, *infos, found);
+        describe(instance, devices[i], &described[i]);
+    sort_by_kind(devices, described, found);
+    *handles = devices;
+    *infos = described;
     *count = found;
     return HEWN_OK;
 }

@@ -1,6 +1,7 @@
 #include "gpu/program.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -9,6 +10,38 @@
 
 static const char spirv_folder[] = "spirv";
 static const char pipeline_folder[] = "pipeline";
+
+static size_t pipeline_bytes(hewn_device *device)
+{
+    size_t length = 0;
+    VkResult result = device->vk.GetPipelineCacheData(device->handle, device->pipeline_cache, &length, NULL);
+    return result == VK_SUCCESS ? length : 0;
+}
+
+static hewn_result create_pipeline_cache(hewn_device *device, hewn_error *error)
+{
+    size_t length;
+    void *kept = hewn_cache_load(&device->cache, pipeline_folder, device->pipeline_key, &length);
+    /* Vulkan wants to be handed back only what this very driver gave. */
+    const size_t header = sizeof device->pipeline_header;
+    if (kept && (length < header || memcmp(kept, &device->pipeline_header, header) != 0)) {
+        hewn_free(kept);
+        kept = NULL;
+        length = 0;
+    }
+    VkPipelineCacheCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO, .initialDataSize = length, .pInitialData = kept};
+    VkResult result = device->vk.CreatePipelineCache(device->handle, &info, NULL, &device->pipeline_cache);
+    if (result < 0 && length > 0) {
+        info.initialDataSize = 0;
+        info.pInitialData = NULL;
+        result = device->vk.CreatePipelineCache(device->handle, &info, NULL, &device->pipeline_cache);
+    }
+    hewn_free(kept);
+    HEWN_TRY(hewn_vulkan_check(result, "creating a pipeline cache", error));
+    device->pipeline_cache_bytes = pipeline_bytes(device);
+    return HEWN_OK;
+}
 
 hewn_result hewn_programs_setup(hewn_device *device, hewn_error *error)
 {
@@ -21,28 +54,15 @@ hewn_result hewn_programs_setup(hewn_device *device, hewn_error *error)
     HEWN_TRY(
         hewn_vulkan_check(device->vk.CreateDescriptorSetLayout(device->handle, &layout, NULL, &device->uniform_layout),
                           "describing uniforms", error));
-    size_t length;
-    void *kept = hewn_cache_load(&device->cache, pipeline_folder, device->pipeline_key, &length);
-    VkPipelineCacheCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO, .initialDataSize = length, .pInitialData = kept};
-    VkResult result = device->vk.CreatePipelineCache(device->handle, &info, NULL, &device->pipeline_cache);
-    device->pipeline_cache_bytes = length;
-    if (result < 0 && length > 0) {
-        /* The driver may refuse what it does not recognise; an empty cache it must take. */
-        info.initialDataSize = 0;
-        info.pInitialData = NULL;
-        device->pipeline_cache_bytes = 0;
-        result = device->vk.CreatePipelineCache(device->handle, &info, NULL, &device->pipeline_cache);
-    }
-    hewn_free(kept);
-    return hewn_vulkan_check(result, "creating a pipeline cache", error);
+    return create_pipeline_cache(device, error);
 }
 
+/* Some drivers keep nothing here, and one wraps what it is given once more each time: only what grew is worth a file.
+ */
 static void save_pipelines(hewn_device *device)
 {
-    size_t length = 0;
-    if (device->vk.GetPipelineCacheData(device->handle, device->pipeline_cache, &length, NULL) != VK_SUCCESS ||
-        length <= device->pipeline_cache_bytes)
+    size_t length = pipeline_bytes(device);
+    if (length <= device->pipeline_cache_bytes)
         return;
     void *bytes = hewn_alloc(length, 1);
     if (bytes && device->vk.GetPipelineCacheData(device->handle, device->pipeline_cache, &length, bytes) == VK_SUCCESS)

@@ -12,7 +12,7 @@ enum { TRIANGLES = 4, STRIP = 5, FAN = 6 };
 
 /* Instances can make a small file large; past this many bytes and 64 times the file's length (with that of its buffers)
  * it is refused. */
-static const uint64_t FREE_BYTES = (uint64_t)256 << 20;
+static const uint64_t FREE_BYTES = (uint64_t)64 << 20;
 
 typedef struct gltf_placed {
     size_t primitive;
@@ -166,7 +166,8 @@ static hewn_result walk_nodes(gltf_reader *reader, gltf_walk *walk, hewn_error *
         multiply(visit.matrix, node->matrix, matrix);
         if (node->mesh != HEWN_GLTF_NONE)
             HEWN_TRY(place_mesh(reader, node->mesh, matrix, error));
-        HEWN_TRY(push_nodes(reader, walk, gltf->children + node->first_child, node->child_count, matrix, error));
+        if (node->child_count > 0)
+            HEWN_TRY(push_nodes(reader, walk, gltf->children + node->first_child, node->child_count, matrix, error));
     }
     return HEWN_OK;
 }

@@ -111,7 +111,7 @@ static hewn_result read_corner(ply_reader *reader, hewn_ply_type type, bool stri
 static hewn_result read_polygon(ply_reader *reader, const hewn_ply_property *property, hewn_error *error)
 {
     uint64_t length;
-    int64_t first = 0, last = 0, corner;
+    int64_t first = 0, last = 0, corner = 0;
     HEWN_TRY(read_length(reader, property, &length, error));
     for (uint64_t i = 0; i < length; i++) {
         HEWN_TRY(read_corner(reader, property->type, false, &corner, error));
@@ -130,7 +130,7 @@ static hewn_result read_polygon(ply_reader *reader, const hewn_ply_property *pro
 static hewn_result read_strips(ply_reader *reader, const hewn_ply_property *property, hewn_error *error)
 {
     uint64_t length, run = 0;
-    int64_t a = 0, b = 0, c;
+    int64_t a = 0, b = 0, c = 0;
     HEWN_TRY(read_length(reader, property, &length, error));
     for (uint64_t i = 0; i < length; i++) {
         HEWN_TRY(read_corner(reader, property->type, true, &c, error));

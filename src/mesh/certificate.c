@@ -34,7 +34,7 @@ static hewn_result check_counts(const hewn_triangles *mesh, hewn_error *error)
 static hewn_result check_positions(const hewn_triangles *mesh, hewn_error *error)
 {
     uint64_t count = mesh->vertex_count, bad = count;
-#pragma omp parallel for schedule(static) reduction(min : bad)
+#pragma omp parallel for schedule(static) reduction(min : bad) if (count >= HEWN_CERTIFY_ALONE)
     for (uint64_t v = 0; v < count; v++) {
         const float *p = mesh->positions + 3 * v;
         if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])))
@@ -51,7 +51,7 @@ static hewn_result check_positions(const hewn_triangles *mesh, hewn_error *error
 static hewn_result check_indices(const hewn_triangles *mesh, hewn_error *error)
 {
     uint64_t count = mesh->triangle_count, bad = count;
-#pragma omp parallel for schedule(static) reduction(min : bad)
+#pragma omp parallel for schedule(static) reduction(min : bad) if (count >= HEWN_CERTIFY_ALONE)
     for (uint64_t t = 0; t < count; t++) {
         const uint32_t *corner = mesh->indices + 3 * t;
         if (corner[0] >= mesh->vertex_count || corner[1] >= mesh->vertex_count || corner[2] >= mesh->vertex_count)
@@ -98,7 +98,7 @@ static void merge_box(float_box *box, const float_box *part)
 static void find_bounds(const hewn_triangles *mesh, hewn_box *out)
 {
     float_box all = empty_box();
-#pragma omp parallel
+#pragma omp parallel if (mesh->triangle_count >= HEWN_CERTIFY_ALONE)
     {
         float_box part = empty_box();
 #pragma omp for schedule(static)
@@ -145,7 +145,7 @@ static void measure_triangle(const hewn_triangles *mesh, uint64_t t, const doubl
 static void measure_blocks(const hewn_triangles *mesh, const double origin[3], uint64_t first, uint64_t last,
                            measure *sums)
 {
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) if (last - first > 1)
     for (uint64_t block = first; block < last; block++) {
         measure sum = {0};
         uint64_t end = least((block + 1) * BLOCK, mesh->triangle_count);
@@ -225,7 +225,7 @@ static hewn_result count_components(const hewn_triangles *mesh, const hewn_stars
     if (!parent)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the components of %llu vertices",
                          (unsigned long long)vertices);
-#pragma omp parallel
+#pragma omp parallel if (mesh->triangle_count >= HEWN_CERTIFY_ALONE)
     {
 #pragma omp for schedule(static)
         for (uint64_t v = 0; v < vertices; v++)
@@ -254,7 +254,7 @@ static hewn_result count_components(const hewn_triangles *mesh, const hewn_stars
 static uint64_t count_collapsed(const hewn_triangles *mesh)
 {
     uint64_t collapsed = 0;
-#pragma omp parallel for schedule(static) reduction(+ : collapsed)
+#pragma omp parallel for schedule(static) reduction(+ : collapsed) if (mesh->triangle_count >= HEWN_CERTIFY_ALONE)
     for (uint64_t t = 0; t < mesh->triangle_count; t++)
         collapsed += hewn_triangle_collapsed(mesh->indices + 3 * t);
     return collapsed;

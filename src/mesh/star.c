@@ -59,7 +59,8 @@ hewn_result hewn_stars_build(const hewn_triangles *mesh, hewn_stars *out, hewn_e
     if (!out->first)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the stars of %llu vertices",
                          (unsigned long long)vertices);
-    int parts = omp_get_max_threads() < PART_LIMIT ? omp_get_max_threads() : PART_LIMIT;
+    int threads = mesh->triangle_count < HEWN_CERTIFY_ALONE ? 1 : omp_get_max_threads();
+    int parts = threads < PART_LIMIT ? threads : PART_LIMIT;
 #pragma omp parallel for schedule(static, 1) num_threads(parts)
     for (int p = 0; p < parts; p++) {
         uint32_t begin = (uint32_t)(vertices * (uint64_t)p / (uint64_t)parts);
@@ -245,7 +246,7 @@ static void add_counts(hewn_star_counts *sum, const hewn_star_counts *part)
 static void examine_short_rows(const hewn_triangles *mesh, const hewn_stars *stars, uint64_t begin, uint64_t end,
                                hewn_star_counts *counts)
 {
-#pragma omp parallel
+#pragma omp parallel if (end - begin >= HEWN_CERTIFY_ALONE)
     {
         link_arc arcs[ROW_LIMIT];
         uint64_t ends[2 * ROW_LIMIT];

@@ -5,6 +5,9 @@
 
 #include "hewn/triangles.h"
 
+/* Below this many vertices or triangles, waking other threads costs more than it saves. */
+enum { HEWN_CERTIFY_ALONE = 1 << 14 };
+
 /* The triangles at each vertex in compressed rows: those of vertex v are triangles[first[v]] to triangles[first[v + 1]
  * - 1], ascending. Triangles with two equal corners are in no row. */
 typedef struct hewn_stars {

@@ -22,14 +22,51 @@ hewn_result hewn_domain_check(const hewn_box *bounds, hewn_error *error)
 }
 
 /* The cells of the final grid depend on the margin, and the margin on them: a longest side of N cells holds the box and
- * two margins of m cells, so a cell is length / (N - 2m). Very coarse grids get half the length on each side instead.
- */
+ * two margins of m cells, so a cell is length / (N - 2m). Coarse grids get an eighth of the length: they need their
+ * cells for the shape. */
 static double margin_for(const hewn_mesh_job_desc *desc, double length)
 {
     if (desc->cell > 0)
         return MARGIN_CELLS * desc->cell;
     double cells = desc->resolution ? desc->resolution : HEWN_DEFAULT_RESOLUTION;
-    return MARGIN_CELLS * length / fmax(cells - 2 * MARGIN_CELLS, 2 * MARGIN_CELLS);
+    double most = length / 8;
+    return cells > 2 * MARGIN_CELLS ? fmin(MARGIN_CELLS * length / (cells - 2 * MARGIN_CELLS), most) : most;
+}
+
+/* Whether the field is NaN wherever one looks: at 5 x 5 x 5 points around the origin. */
+static bool is_nan_everywhere(const hewn_field *field)
+{
+    double points[125][3], values[125];
+    for (int i = 0; i < 125; ++i)
+        for (int axis = 0, rest = i; axis < 3; ++axis, rest /= 5)
+            points[i][axis] = 0.71 * (rest % 5) - 1.39; /* no coordinate is 0, where much is undefined */
+    if (hewn_field_eval(field, hewn_field_root(field), points[0], 125, values, NULL) != HEWN_OK)
+        return false;
+    for (int i = 0; i < 125; ++i)
+        if (!isnan(values[i]))
+            return false;
+    return true;
+}
+
+/* Bounds would be of no use to some fields, so the advice to give them is not for those. */
+static hewn_result explain_no_box(const hewn_field *field, hewn_error *error)
+{
+    /* Not infinite, because infinity times 0 is NaN. */
+    const hewn_box everywhere = {{-1e9, -1e9, -1e9}, {1e9, 1e9, 1e9}};
+    hewn_interval values;
+    if (is_nan_everywhere(field))
+        return hewn_fail(error, HEWN_BAD_INPUT, "the field is not a number (NaN) everywhere");
+    if (hewn_field_bound(field, hewn_field_root(field), &everywhere, &values, NULL) == HEWN_OK && !values.maybe_nan) {
+        if (values.lo >= 0)
+            return hewn_fail(error, HEWN_BAD_INPUT, "the shape is empty: its field is nowhere negative");
+        if (values.hi < 0)
+            return hewn_fail(error, HEWN_BAD_INPUT,
+                             "the field is negative everywhere: all of space is inside, and there is no surface");
+    }
+    return hewn_fail(
+        error, HEWN_BAD_INPUT,
+        "no box around the shape could be proven: it is infinite or too involved; set bounds in the scene, "
+        "or use --bounds x0,y0,z0,x1,y1,z1");
 }
 
 static hewn_result find_in_field(const hewn_mesh_job_desc *desc, const hewn_field *field, hewn_box *out,
@@ -39,8 +76,7 @@ static hewn_result find_in_field(const hewn_mesh_job_desc *desc, const hewn_fiel
     hewn_error reason = {0};
     hewn_result result = hewn_field_find_box(field, hewn_field_root(field), &box, &reason);
     if (result == HEWN_BAD_INPUT)
-        return hewn_fail(error, HEWN_BAD_INPUT, "%.600s; set bounds in the scene or give --bounds x0,y0,z0,x1,y1,z1",
-                         reason.message);
+        return explain_no_box(field, error);
     if (result != HEWN_OK) {
         if (error)
             *error = reason;

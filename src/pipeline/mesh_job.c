@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/progress.h"
 #include "hewn/job.h"
+#include "iso/grid.h"
 #include "pipeline/domain.h"
 #include "pipeline/opening.h"
 #include "pipeline/report.h"
@@ -94,6 +95,9 @@ static hewn_result check(mesh_job *job, hewn_error *error)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a job needs a scene and an output");
     if (desc->resolution && desc->cell > 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a resolution and a cell size exclude each other");
+    if (desc->resolution > HEWN_MAX_RESOLUTION)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "more than %u cells on the longest side are not supported",
+                         HEWN_MAX_RESOLUTION);
     if (!isfinite(desc->cell) || desc->cell < 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a cell size of %g makes no sense", desc->cell);
     if (desc->bounds)

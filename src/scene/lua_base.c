@@ -24,10 +24,26 @@ static int protected_call(lua_State *L)
     return 2;
 }
 
+/* Upvalue: the script's handler. It must not run for the error that stops a scene: that is raised inside the count
+ * hook, where no hook would watch the handler. */
+static int call_handler(lua_State *L)
+{
+    if (hewn_lua_of(L)->stop != HEWN_LUA_RUNNING)
+        return 1;
+    lua_settop(L, 1);
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    lua_call(L, 1, 1);
+    return 1;
+}
+
 /* xpcall(function, handler, arguments...) */
 static int protected_call_with_handler(lua_State *L)
 {
     luaL_checktype(L, 2, LUA_TFUNCTION);
+    lua_pushvalue(L, 2);
+    lua_pushcclosure(L, call_handler, 1);
+    lua_replace(L, 2);
     lua_pushboolean(L, 1);
     lua_pushvalue(L, 1);
     lua_rotate(L, 3, 2); /* function, handler, true, function, arguments... */
@@ -59,7 +75,7 @@ static int set_metatable(lua_State *L)
         return luaL_error(L, "cannot change a protected metatable");
     lua_settop(L, 2);
     if (lua_isnil(L, 2)) {
-        lua_setmetatable(L, 1);
+        lua_setmetatable(L, 1); /* leaves the table alone on the stack */
         return 1;
     }
     static const char *const refused[] = {"__gc", "__mode"};
@@ -88,6 +104,7 @@ static int set_metatable(lua_State *L)
     }
     lua_setfield(L, 3, "__metatable");
     lua_setmetatable(L, 1);
+    lua_settop(L, 1);
     return 1;
 }
 

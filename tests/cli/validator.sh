@@ -6,7 +6,7 @@ set -uo pipefail
 
 shopt -s nullglob
 scenes=("$HEWN_SOURCE"/assets/scenes/*.lua)
-validators=("${XDG_CACHE_HOME:-${HOME:-/nonexistent}/.cache}"/hewn-dev/gltf-validator_*)
+validators=("${HEWN_DEV_CACHE:-${HOME:-/nonexistent}/.cache/hewn-dev}"/gltf-validator_*)
 
 skip_all() {
     printf '1..0 # SKIP %s\n' "$1"

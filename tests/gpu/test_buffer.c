@@ -182,14 +182,15 @@ static void test_out_of_memory(void **state)
     f->device->vk = real;
 }
 
-/* The largest allocation that the device names is one that it gives, and its far end is reached. */
+/* A buffer of nearly the largest size that the device names is given, and its far end is reached. (Of exactly that size
+ * a driver may refuse it.) */
 static void test_largest(void **state)
 {
     fixture *f = *state;
     if (!gpu_test_long())
         skip();
     uint64_t size = hewn_device_get_info(f->device)->max_allocation;
-    size = size > 2ull << 30 ? 2ull << 30 : size;
+    size = (size > 2ull << 30 ? 2ull << 30 : size) / 16 * 15;
     hewn_buffer large, back;
     GPU_TEST_TRY(hewn_buffer_create(f->device, "the most", size, HEWN_BUFFER_DEVICE, &large, &error));
     GPU_TEST_TRY(hewn_buffer_create(f->device, "a word", 4, HEWN_BUFFER_READBACK, &back, &error));

@@ -191,7 +191,7 @@ static void intervals_of_graphs_contain_values(void **test_state)
 static double slack_of(hewn_op op)
 {
     switch (op) {
-    case HEWN_OP_CONE: return 1e-4;
+    case HEWN_OP_CONE: return 2e-5;
     case HEWN_OP_TAN: return 1e-5;
     default: return 6e-6;
     }

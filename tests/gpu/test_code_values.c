@@ -92,13 +92,15 @@ static bool is_beyond(hewn_op op, const float *in, float value, bool *good)
 static bool is_close(const hewn_node_data *node, const float *in, float value, double expected)
 {
     hewn_op op = node->op;
+    if (op == HEWN_OP_CONE && (isinf(in[0]) || isinf(in[1]) || isinf(in[2])))
+        return true; /* infinities of the two lines it is between may cancel */
     if (isnan(expected))
         return isnan(value);
     bool is_sum = op == HEWN_OP_AFFINE || op == HEWN_OP_PLANE;
     if (is_sum && !isfinite(value) && !(size_of_all(node, in) < (double)FLT_MAX))
         return true; /* a term overflows before the sum does */
     if (has_lengths(op) && fmax(fabs((double)in[0]), fmax(fabs((double)in[1]), fabs((double)in[2]))) > 9e18)
-        return !isnan(value) || op == HEWN_OP_CONE;
+        return !isnan(value);
     if ((op != HEWN_OP_MOD || isinf(expected)) && fabs(expected) > (double)FLT_MAX * (1 - 16 * UNIT)) {
         float end = expected > 0 ? FLT_MAX : -FLT_MAX;
         return isinf(expected) ? (double)value == expected

@@ -20,8 +20,10 @@ static char *kept[VARIABLES];
 static int keep_environment(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < VARIABLES; i++)
-        kept[i] = getenv(variables[i]) ? strdup(getenv(variables[i])) : NULL;
+    for (size_t i = 0; i < VARIABLES; i++) {
+        const char *value = getenv(variables[i]);
+        kept[i] = value ? strdup(value) : NULL;
+    }
     unsetenv("HEWN_DEVICE");
     return 0;
 }
@@ -169,7 +171,8 @@ static void fake(const char *lies)
     const char *loader = getenv("HEWN_FAKE_LOADER");
     if (!loader)
         skip();
-    setenv("HEWN_VULKAN_LOADER", loader, 1);
+    else
+        setenv("HEWN_VULKAN_LOADER", loader, 1);
     setenv("HEWN_TEST_FAKE", lies, 1);
 }
 

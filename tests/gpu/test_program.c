@@ -1,6 +1,7 @@
 /* Programs from GLSL and SPIR-V: what the compiler says, constants, uniforms, and one layout for C and the device. */
 #include "gpu_test.h"
 
+#include "base/text.h"
 #include "gpu/device.h"
 #include "shared/scan.h"
 #include "spirv_layout.h"
@@ -69,11 +70,13 @@ static void test_compile_errors(void **state)
     expect_message(f, "", "does not compile");
     expect_message(f, "#version 460\n#include \"x.h\"\nvoid main() {}\n", "include");
     /* Far more complaints than a message holds: cut short, and still a text. */
-    char many[20000] = HEAD "void main() {\n";
+    hewn_text many = {0};
+    hewn_text_append(&many, HEAD "void main() {\n");
     for (int i = 0; i < 200; i++)
-        snprintf(many + strlen(many), sizeof many - strlen(many), "    float name%d = lost_%d;\n", i, i);
-    strcat(many, "}\n");
-    expect_message(f, many, "lost_0");
+        hewn_text_print(&many, "    float name%d = lost_%d;\n", i, i);
+    hewn_text_append(&many, "}\n");
+    expect_message(f, many.bytes, "lost_0");
+    hewn_text_clear(&many);
 }
 
 static void test_push_limits(void **state)
@@ -205,18 +208,18 @@ static void test_any_text(void **state)
         "void",           "main", "(", ")", "{", "}",      ";",      "float", "x",  "=",  "1.0", "for", "if",
         "#version 460\n", "uint", "[", "]", "+", "layout", "buffer", "\\\n",  "/*", "*/", "//",  "\"",  "\xff"};
     for (int i = 0; i < 60; i++) {
-        char glsl[2000] = HEAD;
-        for (int j = 0; j < 80; j++) {
-            strcat(glsl, words[gpu_test_random(&random) % (sizeof words / sizeof *words)]);
-            strcat(glsl, " ");
-        }
-        const hewn_program_desc desc = {.name = "noise", .glsl = glsl};
+        hewn_text glsl = {0};
+        hewn_text_append(&glsl, HEAD);
+        for (int j = 0; j < 80; j++)
+            hewn_text_print(&glsl, "%s ", words[gpu_test_random(&random) % (sizeof words / sizeof *words)]);
+        const hewn_program_desc desc = {.name = "noise", .glsl = glsl.bytes};
         hewn_program *program;
         hewn_error error = {0};
         if (hewn_program_create(f->device, &desc, &program, &error) == HEWN_OK)
             hewn_program_destroy(f->device, &program);
         else
             assert_int_equal(error.code, HEWN_INTERNAL);
+        hewn_text_clear(&glsl);
     }
 }
 

@@ -22,17 +22,17 @@ typedef struct room {
 static const room rooms[] = {
     {"base", ""},
     {"geom", "base"},
-    {"mesh", "base geom"},
+    {"mesh", "base geom hewn/mesh"},
     {"field", "base geom"},
     {"gpu", "base hewn/device"},
     {"eval", "base geom field gpu hewn/device"},
     {"iso", "base geom field gpu eval hewn/device hewn/extract"},
     {"render", "base geom field gpu eval hewn/device hewn/render"},
     {"scene", "base geom field hewn/scene"},
-    {"io", "base geom mesh field hewn/io hewn/scene"},
-    {"pipeline",
-     "base geom mesh field gpu eval iso render scene io hewn/device hewn/extract hewn/scene hewn/io hewn/job"},
-    {"app", "base pipeline hewn/device hewn/extract hewn/scene hewn/io hewn/job hewn/hewn"},
+    {"io", "base geom mesh field hewn/io hewn/mesh hewn/scene"},
+    {"pipeline", "base geom mesh field gpu eval iso render scene io hewn/mesh hewn/device hewn/extract hewn/scene "
+                 "hewn/io hewn/job"},
+    {"app", "base pipeline hewn/mesh hewn/device hewn/extract hewn/scene hewn/io hewn/job hewn/hewn"},
 };
 static const char open_headers[] = "hewn/base hewn/field hewn/triangles";
 
@@ -41,12 +41,13 @@ static const room headers[] = {
     {"base", ""},
     {"field", "hewn/base"},
     {"triangles", "hewn/base hewn/field"},
+    {"mesh", "hewn/base hewn/field hewn/triangles"},
     {"device", "hewn/base"},
     {"extract", "hewn/base hewn/field hewn/triangles hewn/device"},
     {"scene", "hewn/base hewn/field"},
-    {"io", "hewn/base hewn/field hewn/triangles hewn/scene"},
-    {"job", "hewn/base hewn/field hewn/triangles hewn/device hewn/extract hewn/scene hewn/io"},
-    {"hewn", "hewn/base hewn/field hewn/triangles hewn/device hewn/extract hewn/scene hewn/io hewn/job"},
+    {"io", "hewn/base hewn/field hewn/triangles hewn/mesh hewn/scene"},
+    {"job", "hewn/base hewn/field hewn/triangles hewn/mesh hewn/device hewn/extract hewn/scene hewn/io"},
+    {"hewn", "hewn/base hewn/field hewn/triangles hewn/mesh hewn/device hewn/extract hewn/scene hewn/io hewn/job"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
