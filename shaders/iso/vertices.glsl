@@ -9,6 +9,8 @@ layout(push_constant, scalar) uniform Push
 
 /* No vertex comes nearer to a grid point than this share of a cell, so that no two of them fall together. */
 const float NEAREST = 1.25 / 4096.0;
+/* A value that the edge's mean slope takes back in this share of a cell ends the search. */
+const float NEAR_ENOUGH = 1.0e-5;
 const uint MOST_TRIALS = 24u;
 
 float sample_x(uint i)
@@ -28,30 +30,29 @@ bool finite(float value)
     return abs(value) <= 3.0e38;
 }
 
-/* Where the field changes sign along the edge, as a share of it. False position with the Illinois weight, halving where the values
- * give no better guess; the bracket always holds an inside end and an outside end. */
+/* Where the field changes sign along the edge, as a share of it. False position with the Illinois weight (Dowell and Jarratt 1971),
+ * halving where the values give no better guess; the bracket always holds an inside end and an outside end. */
 float crossing(vec3 start, uint axis, float side, float at_start, float at_end)
 {
     float a = 0.0, b = 1.0, fa = at_start, fb = at_end, guess = 0.5;
+    float enough = NEAR_ENOUGH * abs(at_end - at_start);
     bool start_inside = at_start < 0.0;
     int kept = 0;
     for (uint trial = 0u; trial < MOST_TRIALS; trial++) {
         float slope = fb - fa;
-        float next = a - fa * (b - a) / slope;
-        if (!(finite(slope) && next > a && next < b) || trial > 8u)
-            next = 0.5 * (a + b);
-        float moved = abs(next - guess);
-        guess = next;
-        float value = value_along(start, axis, side, next);
-        if (value == 0.0 || (moved < 2.0e-5 && trial > 0u) || b - a < 2.0e-6)
+        guess = a - fa * (b - a) / slope;
+        if (!(finite(slope) && guess > a && guess < b) || trial > 8u)
+            guess = 0.5 * (a + b);
+        float value = value_along(start, axis, side, guess);
+        if (abs(value) <= enough || b - a < 2.0e-6)
             break;
         if ((value < 0.0) == start_inside) {
-            a = next;
+            a = guess;
             fa = value;
             fb = kept == 1 ? 0.5 * fb : fb;
             kept = 1;
         } else {
-            b = next;
+            b = guess;
             fb = value;
             fa = kept == 2 ? 0.5 * fa : fa;
             kept = 2;

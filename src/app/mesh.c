@@ -67,6 +67,7 @@ static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *requ
     }
     if (method && strcmp(method, "mc") != 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method is mc, not '%s'", method);
+    request->desc.open = hewn_arguments_has(arguments, "open");
     return HEWN_OK;
 }
 

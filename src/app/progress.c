@@ -30,7 +30,7 @@ static void on_signal(int number)
 
 void hewn_signals_catch(void)
 {
-    struct sigaction action = {.sa_handler = on_signal}, old;
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART}, old;
     sigemptyset(&action.sa_mask);
     for (int i = 0; i < CAUGHT; ++i)
         sigaddset(&action.sa_mask, caught[i]);

@@ -110,7 +110,7 @@ static hewn_result read_corner(ply_reader *reader, hewn_ply_type type, bool stri
 /* A polygon, cut into a fan around its first corner. */
 static hewn_result read_polygon(ply_reader *reader, const hewn_ply_property *property, hewn_error *error)
 {
-    uint64_t length;
+    uint64_t length = 0;
     int64_t first = 0, last = 0, corner = 0;
     HEWN_TRY(read_length(reader, property, &length, error));
     for (uint64_t i = 0; i < length; i++) {
@@ -129,7 +129,7 @@ static hewn_result read_polygon(ply_reader *reader, const hewn_ply_property *pro
  * the strip. */
 static hewn_result read_strips(ply_reader *reader, const hewn_ply_property *property, hewn_error *error)
 {
-    uint64_t length, run = 0;
+    uint64_t length = 0, run = 0;
     int64_t a = 0, b = 0, c = 0;
     HEWN_TRY(read_length(reader, property, &length, error));
     for (uint64_t i = 0; i < length; i++) {
@@ -150,7 +150,7 @@ static hewn_result read_strips(ply_reader *reader, const hewn_ply_property *prop
 
 static hewn_result skip_list(ply_reader *reader, const hewn_ply_property *property, hewn_error *error)
 {
-    uint64_t length;
+    uint64_t length = 0;
     double ignored;
     HEWN_TRY(read_length(reader, property, &length, error));
     for (uint64_t i = 0; i < length; i++)

@@ -35,25 +35,26 @@ static uint32_t *find_slot(const stl_welder *welder, const float position[3])
 {
     size_t mask = welder->slot_count - 1, at = hash_position(position) & mask;
     const float *positions = welder->builder.mesh.positions;
-    while (welder->slots[at] != NONE &&
+    while (positions && welder->slots[at] != NONE && /* without any vertex all slots are free */
            memcmp(positions + 3 * (size_t)welder->slots[at], position, 3 * sizeof(float)) != 0)
         at = (at + 1) & mask;
     return &welder->slots[at];
 }
 
-static hewn_result grow_table(stl_welder *welder, hewn_error *error)
+/* False when out of memory. */
+static bool grow_table(stl_welder *welder)
 {
     size_t count = welder->slot_count ? 2 * welder->slot_count : 256;
     uint32_t *slots = hewn_alloc(count, sizeof *slots);
     if (!slots)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory welding vertices");
+        return false;
     memset(slots, 0xff, count * sizeof *slots);
     hewn_free(welder->slots);
     welder->slots = slots;
     welder->slot_count = count;
     for (uint64_t v = 0; v < welder->builder.mesh.vertex_count; v++)
         *find_slot(welder, welder->builder.mesh.positions + 3 * v) = (uint32_t)v;
-    return HEWN_OK;
+    return true;
 }
 
 static hewn_result weld(stl_welder *welder, const float given[3], uint32_t *vertex, hewn_error *error)
@@ -62,8 +63,8 @@ static hewn_result weld(stl_welder *welder, const float given[3], uint32_t *vert
     hewn_triangles *mesh = &welder->builder.mesh;
     if (mesh->vertex_count >= NONE)
         return hewn_fail(error, HEWN_LIMIT, "more vertices than indices can name");
-    if (2 * (mesh->vertex_count + 1) > welder->slot_count)
-        HEWN_TRY(grow_table(welder, error));
+    if (2 * (mesh->vertex_count + 1) > welder->slot_count && !grow_table(welder))
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory welding vertices");
     uint32_t *slot = find_slot(welder, position);
     if (*slot == NONE) {
         *slot = (uint32_t)mesh->vertex_count;
@@ -82,7 +83,7 @@ static hewn_result read_binary(stl_welder *welder, const char *bytes, const char
     uint64_t count = hewn_get_u32(bytes + HEADER - 4);
     for (uint64_t t = 0; t < count; t++) {
         const char *at = bytes + HEADER + FACET * t + 12;
-        uint32_t corner[3];
+        uint32_t corner[3] = {0};
         for (int k = 0; k < 3; k++, at += 12) {
             uint32_t bits[3] = {hewn_get_u32(at), hewn_get_u32(at + 4), hewn_get_u32(at + 8)};
             float position[3];

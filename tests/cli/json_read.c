@@ -104,6 +104,16 @@ bool json_is_valid(const char *text)
     return end && *skip_blanks(end) == '\0';
 }
 
+/* For text that is known to be valid. */
+static const char *sure(const char *at)
+{
+    if (!at) {
+        fail_msg("the JSON is not valid");
+        abort(); /* tells readers and analysers that fail_msg() does not return */
+    }
+    return at;
+}
+
 /* The value of one member or element of the container at `at`. */
 static const char *find_child(const char *at, const char *name, size_t length)
 {
@@ -116,11 +126,11 @@ static const char *find_child(const char *at, const char *name, size_t length)
         bool found = !object && i == index;
         if (object) {
             found = strncmp(at + 1, name, length) == 0 && at[1 + length] == '"';
-            at = skip_name(at);
+            at = sure(skip_name(at));
         }
         if (found)
             return at;
-        at = skip_blanks(skip_value(at));
+        at = skip_blanks(sure(skip_value(at)));
         if (*at == ',')
             at = skip_blanks(at + 1);
     }
@@ -144,7 +154,7 @@ static const char *demand(const char *text, const char *path)
     const char *at = json_find(text, path);
     if (!at)
         fail_msg("the JSON has no '%s': %s", path, text);
-    return at;
+    return sure(at);
 }
 
 double json_number(const char *text, const char *path)
@@ -176,7 +186,7 @@ size_t json_count(const char *text, const char *path)
         fail_msg("'%s' is neither an object nor an array: %.20s", path, at);
     size_t count = 0;
     for (at = skip_blanks(at + 1); *at != '}' && *at != ']'; count++) {
-        at = skip_blanks(skip_value(object ? skip_name(at) : at));
+        at = skip_blanks(sure(skip_value(object ? sure(skip_name(at)) : at)));
         if (*at == ',')
             at = skip_blanks(at + 1);
     }

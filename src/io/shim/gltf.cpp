@@ -381,24 +381,23 @@ std::unique_ptr<parsed> parse(const char *text, size_t length)
 
 void expose(std::unique_ptr<parsed> from, hewn_gltf *out)
 {
-    *out = {from->buffers.data(),
-            from->views.data(),
-            from->accessors.data(),
-            from->primitives.data(),
-            from->meshes.data(),
-            from->nodes.data(),
-            from->children.data(),
-            from->roots.data(),
-            from->buffers.size(),
-            from->views.size(),
-            from->accessors.size(),
-            from->primitives.size(),
-            from->meshes.size(),
-            from->nodes.size(),
-            from->children.size(),
-            from->roots.size(),
-            from.get()};
-    from.release();
+    out->buffers = from->buffers.data();
+    out->views = from->views.data();
+    out->accessors = from->accessors.data();
+    out->primitives = from->primitives.data();
+    out->meshes = from->meshes.data();
+    out->nodes = from->nodes.data();
+    out->children = from->children.data();
+    out->roots = from->roots.data();
+    out->buffer_count = from->buffers.size();
+    out->view_count = from->views.size();
+    out->accessor_count = from->accessors.size();
+    out->primitive_count = from->primitives.size();
+    out->mesh_count = from->meshes.size();
+    out->node_count = from->nodes.size();
+    out->child_count = from->children.size();
+    out->root_count = from->roots.size();
+    out->owner = from.release();
 }
 
 } // namespace

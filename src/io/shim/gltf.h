@@ -77,9 +77,9 @@ typedef struct hewn_gltf {
     void *owner;
 } hewn_gltf;
 
-/* HEWN_BAD_INPUT for text that is not glTF 2 or needs extensions that change geometry; HEWN_LIMIT for more than 2^20
- * nodes, meshes or the like; HEWN_OUT_OF_MEMORY. */
-hewn_result hewn_gltf_parse(const char *json, size_t length, const char *name, hewn_gltf *out, hewn_error *error);
+/* From JSON text. HEWN_BAD_INPUT for what is not glTF 2 or needs extensions that change geometry; HEWN_LIMIT for more
+ * than 2^20 nodes, meshes or the like; HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_gltf_parse(const char *text, size_t length, const char *name, hewn_gltf *out, hewn_error *error);
 void hewn_gltf_free(hewn_gltf *gltf);
 
 #ifdef __cplusplus

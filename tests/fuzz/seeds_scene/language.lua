@@ -1,0 +1,11 @@
+local n = param("n", 3, {min = 1, max = 5, integer = true, help = "h"})
+units("mm") up("+Z") bounds(-1, -1, -1, 1, 1, 1)
+local t = setmetatable({}, {__index = function(t, k) return k end, __close = print, __pairs = next})
+local ok, e = pcall(import, "part.lua")
+local s = ("a,b"):gsub(",", ";") .. ("x"):rep(n) .. table.concat({1, 2}, " ")
+for k, v in pairs({a = 1, [2] = 3}) do s = s .. tostring(k) end
+xpcall(function() local c <close> = t error({}) end, function(m) return m end)
+table.sort({3, 1, 2}, function(a, b) return a < b end)
+local f = smooth_union(sphere(1), box(1, 2, 3):rotate("z", 30), 0.2, "cubic")
+f = f | torus(1, 0.2) & ~cylinder(1, 2):rotate(1, 2, 3, 4):scale(1, 2, 3)
+return max(f, x ^ 2 + y % 2 - sin(z), 1):remap(y, x, 0):move(1, 0, 0):subtract(plane(0, 1, 0, 0))
