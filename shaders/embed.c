@@ -1,7 +1,7 @@
 /* Build tool: writes a file as a C array of bytes. usage: embed INPUT OUTPUT.c NAME [INCLUDE_FOLDER]
- * NAME[] is aligned for SPIR-V words and has a NUL after its NAME_size bytes, so that text can be used as a string. With a
- * folder, lines `#include "file"` are replaced by that file of the folder, since shaders completed at run time have no
- * files to include. */
+ * NAME[] is aligned for SPIR-V words and has a NUL after its NAME_size bytes, so that text can be used as a string.
+ * With a folder, lines `#include "file"` are replaced by that file of the folder, since shaders completed at run time
+ * have no files to include. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -64,7 +64,8 @@ int main(int argc, char **argv)
         return 1;
     }
     const char *name = argv[3];
-    fprintf(writer.out, "#include <stddef.h>\nextern const unsigned char %s[];\nextern const size_t %s_size;\n", name, name);
+    fprintf(writer.out, "#include <stddef.h>\nextern const unsigned char %s[];\nextern const size_t %s_size;\n", name,
+            name);
     fprintf(writer.out, "_Alignas(4) const unsigned char %s[] = {", name);
     bool done = write_file(&writer, argv[1]);
     fprintf(writer.out, "\n0};\nconst size_t %s_size = %zu;\n", name, writer.size);

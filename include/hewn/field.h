@@ -110,7 +110,8 @@ HEWN_API hewn_node hewn_cylinder(hewn_field *field, double radius, double height
 HEWN_API hewn_node hewn_capsule(hewn_field *field, double radius, double height);
 /* A cone frustum around the y axis, `bottom` and `top` its radii at -height/2 and height/2; one of them may be 0. */
 HEWN_API hewn_node hewn_cone(hewn_field *field, double bottom, double top, double height);
-/* The half-space n·p <= distance; the normal need not be of length 1, but not 0. */
+/* The half-space whose bounding plane lies `distance` from the origin along the normal, which points outward; the
+ * normal need not be of length 1, but not 0. */
 HEWN_API hewn_node hewn_plane(hewn_field *field, double nx, double ny, double nz, double distance);
 
 /* --- combining --------------------------------------------------------------------------------------------------- */

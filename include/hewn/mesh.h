@@ -79,8 +79,8 @@ HEWN_API hewn_result hewn_mesh_from_polygons(const hewn_polygons *polygons, hewn
 HEWN_API hewn_result hewn_mesh_from_triangles(const hewn_triangles *triangles, hewn_mesh **out, hewn_error *error);
 
 /* Back to indexed triangles of floats, live elements in order; polygons are triangulated as hewn_mesh_triangulate()
- * would, and a vertex attribute "normal" (3 FLOAT or DOUBLE) becomes the normals. `*out` is the caller's. HEWN_LIMIT for
- * a position that a float cannot hold, HEWN_INVALID_ARGUMENT where a polygon cannot be cut, HEWN_OUT_OF_MEMORY. */
+ * would, and a vertex attribute "normal" (3 FLOAT or DOUBLE) becomes the normals. `*out` is the caller's. HEWN_LIMIT
+ * for a position that a float cannot hold, HEWN_INVALID_ARGUMENT where a polygon cannot be cut, HEWN_OUT_OF_MEMORY. */
 HEWN_API hewn_result hewn_mesh_to_triangles(const hewn_mesh *mesh, hewn_triangles *out, hewn_error *error);
 
 /* --- sizes and walking ------------------------------------------------------------------------------------------- */
@@ -118,7 +118,8 @@ HEWN_API hewn_vert hewn_half_head(const hewn_mesh *mesh, hewn_half half);
 HEWN_API hewn_vert hewn_half_tail(const hewn_mesh *mesh, hewn_half half);
 HEWN_API hewn_face hewn_half_face(const hewn_mesh *mesh, hewn_half half); /* none along a boundary */
 
-/* A half-edge that leaves a vertex: the one without a face where the vertex is on a boundary, none where it is isolated.
+/* A half-edge that leaves a vertex: the one without a face where the vertex is on a boundary, none where it is
+ * isolated.
  */
 HEWN_API hewn_half hewn_vert_half(const hewn_mesh *mesh, hewn_vert vert);
 
@@ -190,8 +191,8 @@ HEWN_API const void *hewn_mesh_attribute_read(const hewn_mesh *mesh, uint32_t at
 
 /* --- operations: each leaves the mesh valid, or refuses and changes nothing ------------------------------------------
  *
- * What an operation makes gets its attributes from what was there: a vertex on an edge or in a face the blend that keeps
- * linear functions linear, a new face those of the face it was cut from. All may fail with HEWN_OUT_OF_MEMORY or
+ * What an operation makes gets its attributes from what was there: a vertex on an edge or in a face the blend that
+ * keeps linear functions linear, a new face those of the face it was cut from. All may fail with HEWN_OUT_OF_MEMORY or
  * HEWN_LIMIT (too many ids) where they return a result; elements that are not live are HEWN_INVALID_ARGUMENT. Ids of
  * elements that an operation does not name stay as they are, but for hewn_mesh_compact(). `out` may be NULL. */
 
@@ -203,8 +204,8 @@ HEWN_API hewn_result hewn_mesh_add_vert(hewn_mesh *mesh, const double position[3
 HEWN_API hewn_result hewn_mesh_add_face(hewn_mesh *mesh, const hewn_vert *corners, uint32_t count, hewn_face *out,
                                         hewn_error *error);
 
-/* Takes a face away; its edges go where no other face has them, its vertices stay. Where a vertex would be left with two
- * fans it is split: the fan that follows the face counter-clockwise moves to a new vertex of the same position and
+/* Takes a face away; its edges go where no other face has them, its vertices stay. Where a vertex would be left with
+ * two fans it is split: the fan that follows the face counter-clockwise moves to a new vertex of the same position and
  * attributes. */
 HEWN_API hewn_result hewn_mesh_delete_face(hewn_mesh *mesh, hewn_face face, hewn_error *error);
 
@@ -217,7 +218,8 @@ HEWN_API bool hewn_mesh_can_flip(const hewn_mesh *mesh, hewn_half half);
 HEWN_API void hewn_mesh_flip(hewn_mesh *mesh, hewn_half half);
 
 /* Puts a vertex on an edge at (1 - t) tail + t head, 0 <= t <= 1; the faces beside it gain a corner, and triangles are
- * split in two. The half-edge then runs from its old tail to the new vertex. */
+ * split in two (of two triangles back to back only the left one). The half-edge then runs from its old tail to the new
+ * vertex. */
 HEWN_API hewn_result hewn_mesh_split(hewn_mesh *mesh, hewn_half half, double t, hewn_vert *out, hewn_error *error);
 
 /* Whether the edge may shrink to its head without a non-manifold result (the link condition: Dey, Edelsbrunner, Guha
@@ -232,14 +234,15 @@ HEWN_API void hewn_mesh_collapse(hewn_mesh *mesh, hewn_half half);
 HEWN_API hewn_result hewn_mesh_poke(hewn_mesh *mesh, hewn_face face, const double position[3], hewn_vert *out,
                                     hewn_error *error);
 
-/* Cuts polygons into triangles: ears (Meisters 1975), the best shaped first, judged exactly in the coordinate plane that
- * is nearest to the plane of best fit (Newell's normal), so that concave faces come out right; never an edge that exists
- * already. Degenerate and self-crossing faces are cut somehow. HEWN_INVALID_ARGUMENT, naming the face, where every way
- * that was tried needs an edge that exists already (poke it instead); all faces are then as before. */
+/* Cuts polygons into triangles: ears (Meisters 1975), the best shaped first, judged exactly in the coordinate plane
+ * that is nearest to the plane of best fit (Newell's normal), so that concave faces come out right; never an edge that
+ * exists already. Degenerate and self-crossing faces are cut somehow. HEWN_INVALID_ARGUMENT, naming the face, where
+ * every way that was tried needs an edge that exists already (poke it instead); all faces are then as before. */
 HEWN_API hewn_result hewn_mesh_triangulate_face(hewn_mesh *mesh, hewn_face face, hewn_error *error);
 HEWN_API hewn_result hewn_mesh_triangulate(hewn_mesh *mesh, hewn_error *error);
 
-/* Closes the holes that deleted elements left; all ids change, their order does not. Also gives back room for growth. */
+/* Closes the holes that deleted elements left; all ids change, their order does not. Also gives back room for growth.
+ */
 HEWN_API hewn_result hewn_mesh_compact(hewn_mesh *mesh, hewn_error *error);
 
 /* Adds a copy of `other`, holes included: its element i becomes i + the bound before. Attributes are joined by domain

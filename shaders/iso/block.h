@@ -4,7 +4,8 @@
 
 #include "iso/brick.h"
 
-/* The coordinates of tested block `at`: in order on the top level (`dense` is its size), else child at % 64 of a parent. */
+/* The coordinates of tested block `at`: in order on the top level (`dense` is its size), else child at % 64 of a
+ * parent. */
 uvec3 block_at(uint at, uvec3 dense, Uints parents)
 {
     if (dense.x != 0u)

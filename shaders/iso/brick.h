@@ -23,7 +23,8 @@ uint sign_word(Uints signs, uint slot, uint word)
     return bits;
 }
 
-/* A layer of samples in its two words (rows 0 to 3 and 4 to 7), each as it is and shifted by one sample in x, in y and in both. */
+/* A layer of samples in its two words (rows 0 to 3 and 4 to 7), each as it is and shifted by one sample in x, in y and
+ * in both. */
 struct Layer {
     uvec4 rows[2];
 };
@@ -62,8 +63,8 @@ uvec4 lower_slots(Uints links, uint link)
     return uvec4(links.at[link], links.at[link + 1u], links.at[link + 2u], links.at[link + 3u]);
 }
 
-/* Bit i of the result is set where sample i of the word has a coordinate below `limit` on each axis: cells exist there, and edges
- * along an axis do where only that axis is asked. */
+/* Bit i of the result is set where sample i of the word has a coordinate below `limit` on each axis: cells exist there,
+ * and edges along an axis do where only that axis is asked. */
 uint below(uvec3 base, uint word, uvec3 limit)
 {
     uint z = base.z + (word >> 1);

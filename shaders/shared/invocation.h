@@ -1,5 +1,5 @@
-/* GLSL only: which of a dispatch's invocations this is, when its workgroups are laid out in two dimensions to pass the limit of
- * 65,535 in one. A macro, since the workgroup's size means nothing above the kernel's own layout. */
+/* GLSL only: which of a dispatch's invocations this is, when its workgroups are laid out in two dimensions to pass the
+ * limit of 65,535 in one. A macro, since the workgroup's size means nothing above the kernel's own layout. */
 #ifndef HEWN_SHADERS_SHARED_INVOCATION_H
 #define HEWN_SHADERS_SHARED_INVOCATION_H
 

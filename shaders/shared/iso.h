@@ -1,8 +1,9 @@
 /* The layout that the extraction's kernels and their host share.
  *
- * A grid has cells[a] cells and cells[a] + 1 samples along axis a. A brick owns 8 x 8 x 8 samples, the cells above them and the edges that
- * leave them upward. A sample in a brick is numbered x + 8 y + 64 z; word w of a brick's 16 sign words holds samples 32 w to 32 w + 31.
- * A brick's coordinates are packed ten bits an axis. A slot is a brick's place in the list of active bricks. */
+ * A grid has cells[a] cells and cells[a] + 1 samples along axis a. A brick owns 8 x 8 x 8 samples, the cells above them
+ * and the edges that leave them upward. A sample in a brick is numbered x + 8 y + 64 z; word w of a brick's 16 sign
+ * words holds samples 32 w to 32 w + 31. A brick's coordinates are packed ten bits an axis. A slot is a brick's place
+ * in the list of active bricks. */
 #ifndef HEWN_SHADERS_SHARED_ISO_H
 #define HEWN_SHADERS_SHARED_ISO_H
 
@@ -55,8 +56,8 @@ struct hewn_compact_push {
     HEWN_UINTS kept;    /* out: packed coordinates */
 };
 
-/* What the device knows of a level: 32-bit words at these places. The levels' words follow each other, so a level also writes the
- * next one's. */
+/* What the device knows of a level: 32-bit words at these places. The levels' words follow each other, so a level also
+ * writes the next one's. */
 #define HEWN_CONTROL_TESTED 0u   /* blocks tested at this level */
 #define HEWN_CONTROL_KEPT 2u     /* two words: blocks kept */
 #define HEWN_CONTROL_DISPATCH 4u /* three words: workgroups that test this level */
@@ -68,7 +69,7 @@ struct hewn_link_push {
     HEWN_UINT count; /* active bricks */
     HEWN_UINT pad;
     HEWN_UINTS bricks; /* packed coordinates of the active bricks */
-    HEWN_UINTS links;  /* out, eight a brick: slot of the neighbour at offset (k & 1, k >> 1 & 1, k >> 2 & 1), or a stand-in */
+    HEWN_UINTS links;  /* out, eight a brick: slot of the neighbour at (k & 1, k >> 1 & 1, k >> 2 & 1), or a stand-in */
     HEWN_UINTS states[HEWN_MAX_LEVELS]; /* coarsest first */
 };
 
@@ -85,7 +86,7 @@ struct hewn_classify_push {
     HEWN_UINTS bricks;
     HEWN_UINTS links;
     HEWN_UINTS signs;
-    HEWN_UINTS edges;     /* out: the masks of 48 pairs a brick, pair 16 * axis + word: which edges cross, number of the first's vertex */
+    HEWN_UINTS edges; /* out, pair 16 * axis + word of 48 a brick: which edges cross, number of the first's vertex */
     HEWN_UINTS vertex_counts;   /* out, a brick */
     HEWN_UINTS triangle_counts; /* out, a brick */
 };
@@ -101,7 +102,8 @@ struct hewn_spread_push {
     HEWN_UINTS vertex_bases;
     HEWN_UINTS triangle_bases;
     HEWN_UINTS vertices; /* out: slot and 512 * axis + sample in the first two words of each position */
-    HEWN_UINTS indices;  /* out: slot and sample + 512 * pattern + 131072 * triangle in the first two words of each triangle */
+    HEWN_UINTS
+        indices; /* out: slot, and sample + 512 * pattern + 131072 * triangle, in each triangle's first two words */
 };
 
 struct hewn_vertex_push {

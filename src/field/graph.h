@@ -91,7 +91,7 @@ uint32_t hewn_field_node_count(const hewn_field *field);
 const hewn_node_data *hewn_field_node(const hewn_field *field, uint32_t id);
 
 /* A node of any operation, folded and hash-consed. For front ends and tests; the public builders end here. */
-hewn_node hewn_field_add_node(hewn_field *field, const hewn_node_data *data);
+hewn_node hewn_field_add_node(hewn_field *field, const hewn_node_data *given);
 
 /* The ids that `root` depends on, itself last, operands before users. `*ids` is owned by the caller (hewn_free). */
 hewn_result hewn_field_live_nodes(const hewn_field *field, hewn_node root, uint32_t **ids, size_t *count,

@@ -51,7 +51,7 @@ hewn_result hewn_tape_create(hewn_tape *tape, const hewn_field *field, hewn_node
 void hewn_tape_destroy(hewn_tape *tape);
 
 /* Bounds of the last step over a box of finite or infinite sides; `scratch` has room for one interval a step. */
-hewn_interval hewn_tape_bound(const hewn_tape *tape, const hewn_box *box, hewn_interval *scratch);
+hewn_interval hewn_tape_bound(const hewn_tape *tape, const hewn_box *bounds, hewn_interval *scratch);
 
 /* How much a blend takes from min(a, b) at most, where the two are equal. */
 double hewn_blend_depth(const hewn_node_data *node);

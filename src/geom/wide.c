@@ -24,10 +24,12 @@ void hewn_wide_set(hewn_wide *out, double value)
         shift = exponent - 1;
     }
     int first = (int)(shift / 32);
-    memset(out->limb, 0, sizeof out->limb[0] * ((size_t)first + 3));
-    unsigned __int128 shifted = (unsigned __int128)mantissa << shift % 32;
-    for (int i = 0; i < 3; i++)
-        out->limb[first + i] = (uint32_t)(shifted >> 32 * i);
+    memset(out->limb, 0, sizeof out->limb[0] * (size_t)first);
+    int bits_up = (int)(shift % 32);
+    uint64_t low = (mantissa & 0xffffffffu) << bits_up, high = (mantissa >> 32 << bits_up) + (low >> 32);
+    out->limb[first] = (uint32_t)low;
+    out->limb[first + 1] = (uint32_t)high;
+    out->limb[first + 2] = (uint32_t)(high >> 32);
     out->count = first + 3;
     out->sign = bits >> 63 ? -1 : 1;
     trim(out);

@@ -1,5 +1,5 @@
-/* Integers wide enough to hold the determinant of any finite doubles: the predicates' last resort, where a product would
- * overflow or lose bits below the smallest double. Internal to the predicates. */
+/* Integers wide enough to hold the determinant of any finite doubles: the predicates' last resort, where a product
+ * would overflow or lose bits below the smallest double. Internal to the predicates. */
 #ifndef HEWN_SRC_GEOM_WIDE_H
 #define HEWN_SRC_GEOM_WIDE_H
 

@@ -34,7 +34,7 @@ static hewn_result check_info(const hewn_mesh *mesh, const hewn_attribute_info *
 
 static size_t domain_capacity(const hewn_mesh *mesh, hewn_domain domain)
 {
-    return domain == HEWN_DOMAIN_VERT ? mesh->vert_capacity
+    return domain == HEWN_DOMAIN_VERT   ? mesh->vert_capacity
            : domain == HEWN_DOMAIN_FACE ? mesh->face_capacity
                                         : mesh->half_capacity;
 }
@@ -109,7 +109,8 @@ void *hewn_mesh_attribute_at(hewn_mesh *mesh, uint32_t attribute, uint32_t eleme
     return (void *)hewn_mesh_attribute_read(mesh, attribute, element);
 }
 
-/* --- what operations do to values ---------------------------------------------------------------------------------- */
+/* --- what operations do to values ----------------------------------------------------------------------------------
+ */
 
 bool hewn_mesh_has_values(const hewn_mesh *mesh, hewn_domain domain)
 {

@@ -106,9 +106,8 @@ static hewn_result fill_positions(const mesh_source *source, double *positions, 
         if (!isfinite(to[0]) || !isfinite(to[1]) || !isfinite(to[2]))
             bad = v < bad ? v : bad;
     }
-    return bad < source->vert_count
-               ? hewn_fail(error, HEWN_BAD_INPUT, "the position of vertex %u is not finite", bad)
-               : HEWN_OK;
+    return bad < source->vert_count ? hewn_fail(error, HEWN_BAD_INPUT, "the position of vertex %u is not finite", bad)
+                                    : HEWN_OK;
 }
 
 static hewn_result allocate_verts(const mesh_source *source, hewn_mesh *mesh, hewn_error *error)
@@ -331,7 +330,8 @@ static hewn_result add_normals(hewn_mesh *mesh, const float *normals, hewn_error
 hewn_result hewn_mesh_from_triangles(const hewn_triangles *triangles, hewn_mesh **out, hewn_error *error)
 {
     *out = NULL;
-    if ((triangles->vertex_count > 0 && !triangles->positions) || (triangles->triangle_count > 0 && !triangles->indices))
+    if ((triangles->vertex_count > 0 && !triangles->positions) ||
+        (triangles->triangle_count > 0 && !triangles->indices))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "triangles without positions or indices");
     uint64_t count = triangles->triangle_count > MESH_MOST_IDS ? MESH_MOST_IDS : triangles->triangle_count;
     HEWN_TRY(check_sizes(triangles->vertex_count, triangles->triangle_count, 3 * count, error));

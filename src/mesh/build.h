@@ -3,8 +3,8 @@
  * Each corner of a face stands for the half-edge that leaves it for the next corner. Half-edges go into buckets by the
  * lesser of their two vertices (a counting sort), those that run up before those that run down, both in order of their
  * corners; inside a bucket partners are those with the same other vertex. Vertices are dealt out to `parts` threads in
- * ranges; a thread reads all faces and keeps what falls into its range, so nothing is shared and the order is always the
- * same. */
+ * ranges; a thread reads all faces and keeps what falls into its range, so nothing is shared and the order is always
+ * the same. */
 #ifndef HEWN_SRC_MESH_BUILD_H
 #define HEWN_SRC_MESH_BUILD_H
 

@@ -75,15 +75,15 @@ static void place_range(const mesh_source *source, mesh_matching *matching, uint
 
 /* --- matching ----------------------------------------------------------------------------------------------------- */
 
-typedef struct tally {
+typedef struct edge_tally {
     uint32_t edges, open_edges;
     uint32_t fault;
-} tally;
+} edge_tally;
 
 /* Numbers the edges of a small bucket by comparing all pairs. False where an edge has a third face, or two faces run
  * along it the same way. */
 static bool match_small(const mesh_entry *up, uint32_t up_count, const mesh_entry *down, uint32_t down_count,
-                        uint32_t *halves, tally *tally)
+                        uint32_t *halves, edge_tally *tally)
 {
     uint32_t used = 0, used_count = 0;
     bool twice = false;
@@ -125,7 +125,7 @@ static int by_other(const void *a, const void *b)
 
 /* The same by sorting both sides and running along them. */
 static bool match_large(mesh_entry *up, uint32_t up_count, mesh_entry *down, uint32_t down_count, uint32_t *halves,
-                        tally *tally)
+                        edge_tally *tally)
 {
     bool twice = false;
     qsort(up, up_count, sizeof *up, by_other);
@@ -148,9 +148,9 @@ static bool match_large(mesh_entry *up, uint32_t up_count, mesh_entry *down, uin
     return !twice;
 }
 
-static tally match_range(const mesh_matching *matching, uint32_t part, uint32_t base)
+static edge_tally match_range(const mesh_matching *matching, uint32_t part, uint32_t base)
 {
-    tally tally = {.fault = HEWN_NONE};
+    edge_tally tally = {.fault = HEWN_NONE};
     uint32_t begin = base;
     for (uint32_t v = matching->range[part]; v < matching->range[part + 1] && tally.fault == HEWN_NONE; v++) {
         uint32_t middle = matching->ends[2 * (size_t)v], end = matching->ends[2 * (size_t)v + 1];
@@ -182,7 +182,7 @@ static void deal_ranges(const mesh_source *source, uint32_t parts, mesh_matching
 }
 
 static void run_part(const mesh_source *source, uint32_t *any_corner, mesh_matching *matching, uint32_t part,
-                     uint32_t *sums, tally *tallies)
+                     uint32_t *sums, edge_tally *tallies)
 {
     count_range(source, any_corner, matching, part);
     sums[part] = sum_range(matching, part);
@@ -205,7 +205,7 @@ hewn_result hewn_mesh_match(const mesh_source *source, uint32_t *any_corner, mes
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory matching the edges of %u faces", source->face_count);
     }
     uint32_t sums[MESH_MOST_PARTS];
-    tally tallies[MESH_MOST_PARTS] = {{0}};
+    edge_tally tallies[MESH_MOST_PARTS] = {{0}};
 #pragma omp parallel num_threads((int)choose_parts(source))
     {
 #pragma omp single

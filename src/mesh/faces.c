@@ -12,14 +12,16 @@ hewn_result hewn_mesh_add_vert(hewn_mesh *mesh, const double position[3], hewn_v
         *out = HEWN_VERT_NONE;
     if (!isfinite(position[0]) || !isfinite(position[1]) || !isfinite(position[2]))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the position of a vertex must be finite");
+    const double copy[3] = {position[0], position[1], position[2]}; /* it may lie in the array that grows */
     HEWN_TRY(hewn_mesh_reserve(mesh, 1, 0, 0, error));
-    uint32_t v = hewn_mesh_new_vert(mesh, position);
+    uint32_t v = hewn_mesh_new_vert(mesh, copy);
     if (out)
         out->id = v;
     return HEWN_OK;
 }
 
-/* --- adding a face -------------------------------------------------------------------------------------------------- */
+/* --- adding a face --------------------------------------------------------------------------------------------------
+ */
 
 /* The sides of a face to be: each the half-edge that is there already, or HEWN_NONE for one to be made. */
 typedef struct new_face {
@@ -55,13 +57,14 @@ static hewn_result find_sides(const hewn_mesh *mesh, const new_face *face, hewn_
         uint32_t from = face->corners[i].id, to = face->corners[(i + 1) % face->count].id;
         face->sides[i] = hewn_mesh_find(mesh, from, to);
         if (face->sides[i] != HEWN_NONE && mesh->face[face->sides[i]] != HEWN_NONE)
-            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the edge from vertex %u to vertex %u has a face there already",
-                             from, to);
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                             "the edge from vertex %u to vertex %u has a face there already", from, to);
     }
     for (uint32_t i = 0; i < face->count; i++) {
         uint32_t v = face->corners[i].id, before = face->sides[(i + face->count - 1) % face->count];
         if (before == HEWN_NONE && face->sides[i] == HEWN_NONE && mesh->vert_half[v] != HEWN_NONE)
-            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the faces around vertex %u would form more than one fan", v);
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the faces around vertex %u would form more than one fan",
+                             v);
     }
     return HEWN_OK;
 }
@@ -123,7 +126,8 @@ hewn_result hewn_mesh_add_face(hewn_mesh *mesh, const hewn_vert *corners, uint32
     return result;
 }
 
-/* --- deleting ------------------------------------------------------------------------------------------------------- */
+/* --- deleting -------------------------------------------------------------------------------------------------------
+ */
 
 static bool stands_alone(const hewn_mesh *mesh, uint32_t h)
 {
@@ -174,24 +178,75 @@ static void unlink_corner(hewn_mesh *mesh, uint32_t in, uint32_t out)
     }
 }
 
-/* Takes a face away; room for a vertex at each corner must have been reserved. */
+/* What becomes of a side whose two corners are done. */
+static void finish_side(hewn_mesh *mesh, uint32_t h)
+{
+    if (stands_alone(mesh, h))
+        hewn_mesh_drop_edge(mesh, h);
+    else
+        mesh->face[h] = HEWN_NONE;
+}
+
+/* Takes a face away; room for a vertex at each corner that parts_fan() must have been reserved. */
 static void remove_face(hewn_mesh *mesh, uint32_t f)
 {
     uint32_t first = mesh->face_half[f], in = first;
     do {
         uint32_t out = mesh->next[in];
         unlink_corner(mesh, in, out);
+        if (in != first)
+            finish_side(mesh, in);
         in = out;
     } while (in != first);
-    (void)first;
+    finish_side(mesh, first);
     hewn_mesh_drop_face(mesh, f);
 }
 
 hewn_result hewn_mesh_delete_face(hewn_mesh *mesh, hewn_face face, hewn_error *error)
 {
-    (void)parts_fan;
-    (void)remove_face;
-    (void)face;
-    (void)error;
+    if (!mesh_has_face(mesh, face.id))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no face %u to delete", face.id);
+    uint32_t first = mesh->face_half[face.id], in = first, splits = 0;
+    do {
+        splits += parts_fan(mesh, in);
+        in = mesh->next[in];
+    } while (in != first);
+    HEWN_TRY(hewn_mesh_reserve(mesh, splits, 0, 0, error));
+    remove_face(mesh, face.id);
+    return HEWN_OK;
+}
+
+/* No fewer than the vertices that are split while the faces around v go one by one. Among triangles only a neighbour
+ * that is on a boundary before can be; two polygons may also meet at a vertex far from v. */
+static uint32_t count_splits(const hewn_mesh *mesh, uint32_t v)
+{
+    uint32_t first = mesh->vert_half[v], h = first, corners = 0, boundary_corners = 0;
+    bool triangles = true;
+    do {
+        if (mesh->face[h] != HEWN_NONE) {
+            triangles = triangles && mesh_in_triangle(mesh, h);
+            for (uint32_t k = mesh->next[h]; k != h; k = mesh->next[k]) {
+                corners++;
+                boundary_corners += mesh_on_boundary(mesh, mesh_tail(mesh, k));
+            }
+        }
+        h = mesh_ccw(mesh, h);
+    } while (h != first);
+    return triangles ? boundary_corners : corners;
+}
+
+hewn_result hewn_mesh_delete_vert(hewn_mesh *mesh, hewn_vert vert, hewn_error *error)
+{
+    uint32_t v = vert.id;
+    if (!mesh_has_vert(mesh, v))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no vertex %u to delete", v);
+    if (mesh->vert_half[v] != HEWN_NONE)
+        HEWN_TRY(hewn_mesh_reserve(mesh, count_splits(mesh, v), 0, 0, error));
+    while (mesh->vert_half[v] != HEWN_NONE) {
+        /* The first of the fan, so that v itself is never split. */
+        uint32_t h = mesh->vert_half[v];
+        remove_face(mesh, mesh->face[h] != HEWN_NONE ? mesh->face[h] : mesh->face[mesh_ccw(mesh, h)]);
+    }
+    hewn_mesh_drop_vert(mesh, v);
     return HEWN_OK;
 }

@@ -11,8 +11,8 @@
 #define MESH_DELETED 0xFFFFFFFEu
 #define MESH_MOST_IDS 0xFFFFFFFEu
 
-/* Scalars of one attribute lie side by side, `stride` bytes an element. Corner values are indexed by half-edge; those of
- * half-edges without face are unused. */
+/* Scalars of one attribute lie side by side, `stride` bytes an element. Corner values are indexed by half-edge; those
+ * of half-edges without face are unused. */
 typedef struct mesh_attribute {
     hewn_attribute_info info; /* its name is owned */
     unsigned char *data;
@@ -114,7 +114,7 @@ bool hewn_mesh_has_values(const hewn_mesh *mesh, hewn_domain domain);
 
 static inline uint32_t mesh_domain_bound(const hewn_mesh *mesh, hewn_domain domain)
 {
-    return domain == HEWN_DOMAIN_VERT ? mesh->vert_bound
+    return domain == HEWN_DOMAIN_VERT   ? mesh->vert_bound
            : domain == HEWN_DOMAIN_FACE ? mesh->face_bound
                                         : mesh->half_bound;
 }

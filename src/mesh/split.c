@@ -2,13 +2,14 @@
 
 #include <math.h>
 
-/* The half-edges before and after a new vertex on one side of an edge: the corner there lies at `in`. */
-static void blend_corner(hewn_mesh *mesh, uint32_t in, uint32_t before, uint32_t after, double weight_after)
+/* The corner of one face at a new vertex, `in`, from those before and after it along the edge. */
+static void blend_corner(hewn_mesh *mesh, uint32_t in, uint32_t before, double weight_before, uint32_t after,
+                         double weight_after)
 {
     if (mesh->face[in] == HEWN_NONE)
         return;
     const uint32_t from[2] = {before, after};
-    const double weights[2] = {1 - weight_after, weight_after};
+    const double weights[2] = {weight_before, weight_after};
     hewn_mesh_blend_values(mesh, HEWN_DOMAIN_CORNER, in, from, weights, 2);
 }
 
@@ -33,8 +34,8 @@ static uint32_t cut_edge(hewn_mesh *mesh, uint32_t h, uint32_t v, double t)
     mesh->vert_half[v] = mesh->face[k] == HEWN_NONE ? k : g;
     /* The head's corner left of h moves on to k, the tail's corner right of it stays at g. */
     hewn_mesh_copy_values(mesh, HEWN_DOMAIN_CORNER, k, h);
-    blend_corner(mesh, h, mesh->prev[h], k, t);
-    blend_corner(mesh, l, mesh->prev[l], g, 1 - t);
+    blend_corner(mesh, h, mesh->prev[h], 1 - t, k, t);
+    blend_corner(mesh, l, mesh->prev[l], t, g, 1 - t);
     const uint32_t ends[2] = {mesh->head[g], head};
     const double weights[2] = {1 - t, t};
     hewn_mesh_blend_values(mesh, HEWN_DOMAIN_VERT, v, ends, weights, 2);
@@ -72,6 +73,9 @@ hewn_result hewn_mesh_split(hewn_mesh *mesh, hewn_half half, double t, hewn_vert
     HEWN_TRY(hewn_mesh_reserve(mesh, 1, 3, 2, error));
     bool left = mesh->face[h] != HEWN_NONE && mesh_in_triangle(mesh, h);
     bool right = mesh->face[h ^ 1] != HEWN_NONE && mesh_in_triangle(mesh, h ^ 1);
+    /* Back to back triangles: the second cut would double the edge of the first. */
+    if (left && right && mesh->head[mesh->next[h]] == mesh->head[mesh->next[h ^ 1]])
+        right = false;
     const double *a = mesh->position + 3 * (size_t)mesh_tail(mesh, h);
     const double *b = mesh->position + 3 * (size_t)mesh->head[h];
     double position[3];

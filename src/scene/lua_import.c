@@ -97,13 +97,13 @@ static void run_file(lua_State *L, const char *name, const char *path, const cha
 {
     hewn_scene *scene = hewn_lua_of(L)->scene;
     hewn_error reason = {0};
-    char *text;
-    size_t length;
+    char *text = NULL;
+    size_t length = 0;
     if (add_source(scene, path, real, &reason) != HEWN_OK ||
         hewn_file_read(real, HEWN_SCENE_FILE_LIMIT, &text, &length, &reason) != HEWN_OK)
         luaL_error(L, "import: '%s': %s", name, reason.message);
     if (ends_in_vm(path)) {
-        hewn_node node;
+        hewn_node node = HEWN_NODE_NONE;
         hewn_result result = hewn_vm_parse(scene->field, path, text, length, &node, &reason);
         hewn_free(text);
         if (result != HEWN_OK)

@@ -19,7 +19,7 @@ enum {
 };
 
 #define LOOK_INTERVAL ((uint64_t)8000000)    /* ns between looks at the processor's time */
-#define LEAST_TIME ((uint64_t)1000000000)    /* ns */
+#define LEAST_TIME ((uint64_t)500000000)     /* ns */
 #define TIME_PER_INSTRUCTION ((uint64_t)100) /* ns; an order of magnitude above what one takes */
 #define BLOCK_LIMIT ((size_t)64 << 20)       /* bytes of one table or buffer */
 #define UNLIMITED ((uint64_t)1 << 60)

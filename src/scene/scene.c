@@ -176,8 +176,8 @@ hewn_result hewn_scene_load_text(const hewn_scene_desc *desc, const char *text, 
 hewn_result hewn_scene_load(const hewn_scene_desc *desc, hewn_scene **out, hewn_error *error)
 {
     hewn_scene_format format;
-    char *text;
-    size_t length;
+    char *text = NULL;
+    size_t length = 0;
     *out = NULL;
     if (!desc->path || desc->path[0] == '\0')
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the scene has no path");

@@ -123,9 +123,9 @@ static hewn_result define(vm_reader *reader, word name, hewn_node node)
 
 static hewn_result find_operand(const vm_reader *reader, word w, hewn_node *out)
 {
-    const name_entry *entry = reader->capacity ? find_slot(reader, w) : NULL;
+    const name_entry *entry = find_slot(reader, w);
     char shown[SHOWN];
-    if (!entry || !entry->bytes)
+    if (!entry->bytes)
         return hewn_fail_at(reader->error, HEWN_BAD_INPUT, reader->path, reader->line,
                             "no line above this one is called '%s'", show(w, shown));
     *out = entry->node;
@@ -162,9 +162,9 @@ static hewn_result check_count(const vm_reader *reader, word op, size_t words, s
 static hewn_result build(vm_reader *reader, const word *words, size_t count, hewn_node *out)
 {
     word op = words[1];
-    hewn_node a, b;
+    hewn_node a = HEWN_NODE_NONE, b = HEWN_NODE_NONE;
     if (is_word(op, "const")) {
-        double value;
+        double value = 0;
         HEWN_TRY(check_count(reader, op, count, 1));
         HEWN_TRY(read_number(reader, words[2], &value));
         *out = hewn_constant(reader->field, value);
@@ -229,12 +229,10 @@ static hewn_result read_line(vm_reader *reader, const char *begin, const char *e
     if (count == 1)
         return hewn_fail_at(reader->error, HEWN_BAD_INPUT, reader->path, reader->line, "'%s' has no operation",
                             show(words[0], shown));
-    if (reader->capacity) {
-        const name_entry *entry = find_slot(reader, words[0]);
-        if (entry->bytes)
-            return hewn_fail_at(reader->error, HEWN_BAD_INPUT, reader->path, reader->line,
-                                "'%s' is already defined on line %u", show(words[0], shown), entry->line);
-    }
+    const name_entry *entry = find_slot(reader, words[0]);
+    if (entry->bytes)
+        return hewn_fail_at(reader->error, HEWN_BAD_INPUT, reader->path, reader->line,
+                            "'%s' is already defined on line %u", show(words[0], shown), entry->line);
     hewn_node node = HEWN_NODE_NONE;
     HEWN_TRY(build(reader, words, count, &node));
     if (hewn_node_is_none(node)) {
@@ -257,7 +255,7 @@ hewn_result hewn_vm_parse(hewn_field *field, const char *path, const char *text,
     const char *at = text, *end = text + length;
     if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
         at += 3; /* the mark that some editors put before UTF-8 */
-    hewn_result result = HEWN_OK;
+    hewn_result result = grow_names(&reader);
     while (at < end && result == HEWN_OK) {
         const char *newline = memchr(at, '\n', (size_t)(end - at));
         const char *stop = newline ? newline : end;

@@ -96,8 +96,12 @@ int main(int count, char **arguments)
 
     printf("1..2\n%s 1 - %zu seeds\n", seed_count > 0 ? "ok" : "not ok", seed_count);
     fflush(stdout);
-    if (seed_count == 0 || bytes == NULL)
+    if (bytes == NULL)
+        abort();
+    if (seed_count == 0) {
+        free(bytes);
         return 1;
+    }
     for (size_t i = 0; i < seed_count; i++)
         run(seeds[i].bytes, seeds[i].size);
     for (uint64_t i = 0; i < mutations; i++) {

@@ -107,10 +107,9 @@ static void sets_of_shapes(void **state)
         cube = hewn_intersection(f, cube, hewn_plane(f, normals[i][0], normals[i][1], normals[i][2], 1));
     exact_box(check_box(f, cube, 2, 1.1), (double[]){-1, -1, -1}, (double[]){1, 1, 1});
     /* By De Morgan, through complements. */
-    hewn_node both = hewn_complement(f, hewn_union(f, hewn_complement(f, ball), hewn_complement(f, far)));
     assert_int_equal(hewn_field_find_box(f, hewn_complement(f, ball), &(hewn_box){{0}, {0}}, NULL), HEWN_BAD_INPUT);
     hewn_node near_ball = hewn_translate(f, ball, 0.5, 0, 0);
-    both = hewn_complement(f, hewn_union(f, hewn_complement(f, ball), hewn_complement(f, near_ball)));
+    hewn_node both = hewn_complement(f, hewn_union(f, hewn_complement(f, ball), hewn_complement(f, near_ball)));
     check_box(f, both, 1.5, 1.4);
     /* A shell, an offset, a scaled value. */
     exact_box(check_box(f, hewn_sub(f, hewn_abs(f, ball), hewn_constant(f, 0.1)), 1.5, 1.1),

@@ -262,10 +262,10 @@ static void test_lua_stays(void **state)
         "assert(table.concat({1, 2, 3}, ' ') == '1 2 3') local t = {3, 1, 2} table.sort(t) assert(t[1] == 1) return x",
         "local t = {1, 3} table.insert(t, 2, 2) assert(t[2] == 2 and table.remove(t) == 3 and #t == 2) return x",
         "local t = table.move({1, 2, 3}, 1, 3, 2) assert(t[4] == 3) assert(table.pack(1, nil).n == 2) return x",
-        "local C = {} C.__index = C function C:f() return self.v end C.__add = function(a, b) return a.v + b.v end "
-        "local o = setmetatable({v = 4}, C) assert(o:f() == 4 and o + o == 8 and getmetatable(o) == C) return x",
-        "local p = setmetatable({}, {__metatable = 'no'}) assert(getmetatable(p) == 'no') "
-        "assert(not pcall(setmetatable, p, {})) return x",
+        ("local C = {} C.__index = C function C:f() return self.v end C.__add = function(a, b) return a.v + b.v end "
+         "local o = setmetatable({v = 4}, C) assert(o:f() == 4 and o + o == 8 and getmetatable(o) == C) return x"),
+        ("local p = setmetatable({}, {__metatable = 'no'}) assert(getmetatable(p) == 'no') "
+         "assert(not pcall(setmetatable, p, {})) return x"),
         "local o = setmetatable({}, {}) setmetatable(o, nil) assert(getmetatable(o) == nil) return x",
         "do local closed local o <close> = setmetatable({}, {__close = function() closed = true end}) end return x",
         "goto done do error('no') end ::done:: return x",

@@ -88,7 +88,7 @@ static void test_models(void **state)
         double points[3 * TEST_POINTS], values[TEST_POINTS];
         test_points(points);
         test_values(scene, values);
-        for (int k = 0; k < (length > 10000 ? 8 : TEST_POINTS); k++) {
+        for (int k = 0; k < (length > 10000 ? 3 : TEST_POINTS); k++) {
             double expected = interpret(text, points[3 * k], points[3 * k + 1], points[3 * k + 2]);
             if (!(fabs(values[k] - expected) <= 1e-12 * (1 + fabs(expected))))
                 fail_msg("%s at point %d is %.17g, not %.17g", names[i], k, values[k], expected);

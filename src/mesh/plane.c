@@ -1,0 +1,150 @@
+#include "mesh/plane.h"
+
+#include <math.h>
+
+/* --- turning --------------------------------------------------------------------------------------------------------
+ */
+
+/* Adds a number to an expansion of parts that do not overlap, least first. */
+static void expansion_add(double *parts, int *count, double value)
+{
+    double sum = value;
+    for (int i = 0; i < *count; i++) {
+        double a = sum, b = parts[i];
+        sum = a + b;
+        double b_virtual = sum - a;
+        parts[i] = (a - (sum - b_virtual)) + (b - b_virtual);
+    }
+    parts[(*count)++] = sum;
+}
+
+static int exact_turn(const double a[2], const double b[2], const double c[2])
+{
+    const double factors[6][2] = {{a[0], b[1]},  {-a[1], b[0]}, {b[0], c[1]},
+                                  {-b[1], c[0]}, {c[0], a[1]},  {-c[1], a[0]}};
+    double parts[12];
+    int count = 0;
+    for (int i = 0; i < 6; i++) {
+        double product = factors[i][0] * factors[i][1];
+        expansion_add(parts, &count, fma(factors[i][0], factors[i][1], -product));
+        expansion_add(parts, &count, product);
+    }
+    while (count > 0 && parts[count - 1] == 0)
+        count--;
+    return count == 0 ? 0 : parts[count - 1] > 0 ? 1 : -1;
+}
+
+int hewn_plane_turn(const double a[2], const double b[2], const double c[2])
+{
+    double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
+    double area = left - right, bound = 4.0 * 0x1p-53 * (fabs(left) + fabs(right));
+    if (area > bound || -area > bound)
+        return area > 0 ? 1 : -1;
+    return exact_turn(a, b, c);
+}
+
+/* --- projecting -----------------------------------------------------------------------------------------------------
+ */
+
+/* The exponent that brings all coordinates to at most 1 in size. */
+static int common_exponent(const double *const *corners, uint32_t count)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            most = fmax(most, fabs(corners[i][k]));
+    int exponent = 0;
+    frexp(most, &exponent);
+    return most > 0 ? -exponent : 0;
+}
+
+/* Newell's normal of the scaled polygon, coordinates taken from its first corner. */
+static void newell(const double *const *corners, uint32_t count, int exponent, double normal[3])
+{
+    double origin[3], at[3], next[3];
+    normal[0] = normal[1] = normal[2] = 0;
+    for (int k = 0; k < 3; k++) {
+        origin[k] = ldexp(corners[0][k], exponent);
+        at[k] = 0;
+    }
+    for (uint32_t i = 1; i <= count; i++) {
+        for (int k = 0; k < 3; k++)
+            next[k] = ldexp(corners[i < count ? i : 0][k], exponent) - origin[k];
+        for (int k = 0; k < 3; k++) {
+            int u = (k + 1) % 3, v = (k + 2) % 3;
+            normal[k] += (at[u] - next[u]) * (at[v] + next[v]);
+        }
+        for (int k = 0; k < 3; k++)
+            at[k] = next[k];
+    }
+}
+
+void hewn_plane_project(const double *const *points, uint32_t count, uint32_t point_count, double *out)
+{
+    int exponent = common_exponent(points, point_count);
+    double normal[3];
+    newell(points, count, exponent, normal);
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        axis = fabs(normal[k]) > fabs(normal[axis]) ? k : axis;
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    if (normal[axis] < 0) {
+        int swap = u;
+        u = v;
+        v = swap;
+    }
+    for (uint32_t i = 0; i < point_count; i++) {
+        out[2 * (size_t)i] = ldexp(points[i][u], exponent);
+        out[2 * (size_t)i + 1] = ldexp(points[i][v], exponent);
+    }
+}
+
+/* --- weights --------------------------------------------------------------------------------------------------------
+ */
+
+/* Weights beyond this say that the polygon crosses itself or the point is far outside: they would blow values up. */
+static const double MOST_WEIGHT = 64;
+
+static void share_side(double *weights, uint32_t count, uint32_t i, uint32_t j, double length_i, double length_j)
+{
+    for (uint32_t k = 0; k < count; k++)
+        weights[k] = 0;
+    double whole = length_i + length_j;
+    weights[i] = whole > 0 ? length_j / whole : 1;
+    weights[j] = whole > 0 ? length_i / whole : 0;
+}
+
+static double distance(const double *polygon, uint32_t i, const double point[2])
+{
+    return hypot(polygon[2 * (size_t)i] - point[0], polygon[2 * (size_t)i + 1] - point[1]);
+}
+
+void hewn_plane_weights(const double *polygon, uint32_t count, const double point[2], double *weights)
+{
+    for (uint32_t i = 0; i < count; i++)
+        weights[i] = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t j = (i + 1) % count;
+        const double *a = polygon + 2 * (size_t)i, *b = polygon + 2 * (size_t)j;
+        double ax = a[0] - point[0], ay = a[1] - point[1], bx = b[0] - point[0], by = b[1] - point[1];
+        double length_a = distance(polygon, i, point), length_b = distance(polygon, j, point);
+        double dot = ax * bx + ay * by, cross = ax * by - ay * bx;
+        if (length_a == 0 || length_b == 0 || (hewn_plane_turn(a, b, point) == 0 && dot < 0)) {
+            share_side(weights, count, i, j, length_a, length_b);
+            return;
+        }
+        /* The tangent of half the angle between them, in the form that is stable on either side of a right angle. */
+        double product = length_a * length_b;
+        double tangent = dot > 0 ? cross / (product + dot) : cross == 0 ? 0 : (product - dot) / cross;
+        weights[i] += tangent / length_a;
+        weights[j] += tangent / length_b;
+    }
+    double sum = 0;
+    for (uint32_t i = 0; i < count; i++)
+        sum += weights[i];
+    bool usable = isfinite(sum) && sum != 0;
+    for (uint32_t i = 0; i < count; i++)
+        usable = usable && fabs(weights[i] / sum) <= MOST_WEIGHT;
+    for (uint32_t i = 0; i < count; i++)
+        weights[i] = usable ? weights[i] / sum : 1.0 / count;
+}

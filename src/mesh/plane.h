@@ -1,0 +1,22 @@
+/* Polygons seen in the plane: which way a turn goes, decided exactly. */
+#ifndef HEWN_SRC_MESH_PLANE_H
+#define HEWN_SRC_MESH_PLANE_H
+
+#include "base/error.h"
+
+/* The sign of the area of the triangle a b c: 1 counter-clockwise, -1 clockwise, 0 exactly straight. Exact for
+ * coordinates whose products neither overflow nor underflow (Shewchuk 1997 for the filter and the expansions). */
+int hewn_plane_turn(const double a[2], const double b[2], const double c[2]);
+
+/* Points dropped onto the coordinate plane nearest to the plane of best fit of the first `count`, the corners of a
+ * polygon, seen from the side that Newell's normal points to, and scaled by one power of two to at most 1 in size.
+ * `points` are positions, `out` two numbers each. */
+void hewn_plane_project(const double *const *points, uint32_t count, uint32_t point_count, double *out);
+
+/* Mean value coordinates of a point in a polygon of the plane (Hormann and Floater 2006): `weights` sum to 1 and
+ * reproduce linear functions. On a side or corner they are those of the side; where the polygon has no area
+ * or a weight would exceed 64 in size, all equal.
+ */
+void hewn_plane_weights(const double *polygon, uint32_t count, const double point[2], double *weights);
+
+#endif
