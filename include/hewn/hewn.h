@@ -3,6 +3,7 @@
 #define HEWN_H
 
 #include "hewn/base.h"
+#include "hewn/check.h"
 #include "hewn/device.h"
 #include "hewn/extract.h"
 #include "hewn/field.h"

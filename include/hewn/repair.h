@@ -29,7 +29,8 @@ typedef enum hewn_outward {
 enum { HEWN_FILL_LIMIT = 512 };
 
 /* What to do. All zero: nothing is welded, filled or removed for its size; degenerate and duplicate faces and isolated
- * vertices go, faces are oriented, and what is not manifold is split. The steps run in the order of the members.
+ * vertices go, faces are oriented, and what is not manifold is split. The steps run in the order of the members, but
+ * that components are turned outward once holes are filled.
  *
  * weld: vertices that a chain of steps of at most weld_distance (scene units, 0: equal positions only, -0 equals 0)
  * joins become one, the lowest of them, which keeps its position. Which vertices are joined does not depend on their
@@ -49,8 +50,8 @@ enum { HEWN_FILL_LIMIT = 512 };
  *
  * Filling: the triangulation of least largest dihedral angle, then least area (Barequet and Sharir 1995; Liepa 2003,
  * 'Filling holes in meshes'), never with an edge that exists; holes of more than 8 edges are then refined to the
- * spacing of their rim, and faired to a thin plate unless fill_flat. Patches may pass through other parts of the
- * surface. The rim of an open sheet is a hole like any other.
+ * spacing of their rim and faired to a thin plate; fill_flat leaves both out. Patches may pass through other parts of
+ * the surface. The rim of an open sheet is a hole like any other.
  *
  * strict: instead of repairing, the first degenerate or duplicate face, pair of faces that disagree in direction,
  * non-manifold edge or vertex, hole that would be filled and component that would be removed is HEWN_BAD_INPUT, naming
@@ -73,12 +74,12 @@ typedef struct hewn_repair_desc {
 
 /* How often each step found something to do. */
 typedef struct hewn_repair_report {
-    uint64_t welded_vertices; /* that became another one */
-    uint64_t cleaned_faces;   /* that lost repeated corners, or were cut where they met themselves */
-    uint64_t degenerate_faces; /* dropped */
-    uint64_t flat_faces;       /* dropped for their area */
-    uint64_t duplicate_faces;  /* dropped */
-    uint64_t turned_faces;
+    uint64_t welded_vertices;       /* that became another one */
+    uint64_t cleaned_faces;         /* that lost repeated corners, or were cut where they met themselves */
+    uint64_t degenerate_faces;      /* dropped */
+    uint64_t flat_faces;            /* dropped for their area */
+    uint64_t duplicate_faces;       /* dropped */
+    uint64_t turned_faces;          /* of those that stayed */
     uint64_t turned_components;     /* closed ones turned outward as a whole, their faces counted above */
     uint64_t one_sided_cuts;        /* edges of two faces that had to be cut for the sake of orientation */
     uint64_t non_manifold_edges;    /* of more than two faces, split */
@@ -87,10 +88,10 @@ typedef struct hewn_repair_report {
     uint64_t removed_components;
     uint64_t removed_faces; /* with them */
     uint64_t filled_holes;
-    uint64_t filled_edges;  /* boundary edges that the filled holes had */
-    uint64_t added_faces;   /* by filling */
+    uint64_t filled_edges; /* boundary edges that the filled holes had */
+    uint64_t added_faces;  /* by filling */
     uint64_t added_vertices;
-    uint64_t kept_holes; /* within fill_edges, but every triangulation would need an edge or face that exists */
+    uint64_t kept_holes;        /* within fill_edges, but every triangulation would need an edge or face that exists */
     uint64_t isolated_vertices; /* dropped, with those that lost their faces above */
 } hewn_repair_report;
 

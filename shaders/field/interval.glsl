@@ -1,51 +1,64 @@
-/* Operations on intervals: vec2 (lo, hi) in and out. A result contains every value that the point operation computes, on
- * any driver that keeps Vulkan's promises, for arguments in the operands, and is [-inf, inf] where NaN is possible; so an
- * operand of [-inf, inf] may stand for NaN. What is added to a bound counts the errors of both: those of the values and
- * those of the bound itself. One unit, F_U, is the largest distance of neighbouring floats over their size. */
+/* Operations on intervals: vec2 (lo, hi) in and out. A result contains every value that the point operation computes for
+ * arguments in the operands, on any driver that keeps Vulkan's promises, and is [-inf, inf] where NaN is possible.
+ *
+ * Sums, differences and products are rounded correctly, in one mode a device; such rounding is monotone, as is taking
+ * denormals for zero. So what is made of them alone needs no widening where it grows with its arguments: the ends have
+ * the bits that values there have. What divides, takes roots or adds up polynomials is widened by the error of the value and by
+ * that of the end. A unit, F_U, is the greatest distance of neighbouring floats over their size.
+ *
+ * Operands are finite. Where the emitter cannot tell that they are, and that the result is, it calls f_guard. */
 //: core
 #define F_WHOLE vec2(-F_INF, F_INF)
 #define F_U 1.1920929e-07
-/* Four smallest normal numbers: more than what denormal operands and results lose where they become zero. */
+/* Four smallest normal numbers: what results near zero may lose. */
 #define F_TINY 4.7019774e-38
 
-/* Finite bounds of a variable. A bound that is denormal moves to where zero is inside. */
-vec2 f_box_side(vec2 a)
+bool f_is_endless(vec2 a)
 {
     ivec2 magnitude = floatBitsToInt(a) & 0x7fffffff;
-    bvec2 denormal = lessThan(magnitude, ivec2(0x00800000));
-    bvec2 up = greaterThan(floatBitsToInt(a), ivec2(0));
-    vec2 safe = vec2(f_pick(up.x || magnitude.x == 0, 0.0, -1.17549435e-38),
-                     f_pick(up.y, 1.17549435e-38, 0.0));
-    return mix(a, safe, denormal);
+    return max(magnitude.x, magnitude.y) >= 0x7f800000;
 }
 
-bool f_is_whole(vec2 a)
+vec2 f_whole_if(bool condition, vec2 a)
 {
-    ivec2 bits = floatBitsToInt(a);
-    return ((bits.x ^ int(0xff800000u)) | (bits.y ^ 0x7f800000)) == 0;
-}
-
-bool f_is_nan(vec2 a)
-{
-    return f_is_nan(a.x, a.y);
-}
-
-/* Everything where a bound came out as NaN. */
-vec2 f_settle(vec2 a)
-{
-    return mix(a, F_WHOLE, bvec2(f_is_nan(a)));
-}
-
-vec2 f_number(float a)
-{
-    return f_settle(vec2(a));
+    return mix(a, F_WHOLE, bvec2(condition));
 }
 
 /* Everything where a bound is not finite. */
 vec2 f_finite(vec2 a)
 {
-    ivec2 magnitude = floatBitsToInt(a) & 0x7fffffff;
-    return mix(a, F_WHOLE, bvec2(max(magnitude.x, magnitude.y) >= 0x7f800000));
+    return f_whole_if(f_is_endless(a), a);
+}
+
+vec2 f_number(float a)
+{
+    return f_finite(vec2(a));
+}
+
+vec2 f_guard(vec2 result, vec2 a)
+{
+    bool first = f_is_endless(result), second = f_is_endless(a);
+    return f_whole_if(first || second, result);
+}
+
+vec2 f_guard(vec2 result, vec2 a, vec2 b)
+{
+    bool first = f_is_endless(a), second = f_is_endless(b);
+    return f_whole_if(first || second, f_finite(result));
+}
+
+vec2 f_guard(vec2 result, vec2 a, vec2 b, vec2 c)
+{
+    bool first = f_is_endless(a), second = f_is_endless(b);
+    return f_whole_if(first || second, f_guard(result, c));
+}
+
+/* What the emitter knows of sizes holds for coordinates up to 2^30. */
+vec2 f_result(vec2 result, vec2 x, vec2 y, vec2 z)
+{
+    ivec2 size = max(floatBitsToInt(x) & 0x7fffffff, floatBitsToInt(y) & 0x7fffffff);
+    size = max(size, floatBitsToInt(z) & 0x7fffffff);
+    return f_whole_if(max(size.x, size.y) > 0x4e800000, result);
 }
 
 /* Moves bounds apart by `amount`, which is not negative. */
@@ -58,21 +71,27 @@ precise vec2 f_apart(vec2 a, vec2 amount)
 precise vec2 f_widen(vec2 a, float units)
 {
     precise vec2 amount = abs(a) * (units * F_U) + F_TINY;
-    return f_settle(f_apart(a, amount));
+    return f_apart(a, amount);
 }
 
-vec2 f_not_negative(vec2 a, bool condition)
+/* The same for what is not negative, and then stays so. Roots err by 4.5 units, here and there. */
+precise vec2 f_widen_root(vec2 a)
 {
-    return vec2(f_pick(condition && a.x < 0.0, 0.0, a.x), a.y);
+    precise vec2 r = a * vec2(1.0 - 10.0 * F_U, 1.0 + 10.0 * F_U);
+    return r;
+}
+
+/* For the values of own functions, which are not negative. */
+vec2 f_not_negative(vec2 a)
+{
+    return vec2(f_pick(a.x < 0.0, 0.0, a.x), a.y);
 }
 
 /* Least and greatest absolute value. */
 vec2 f_magnitude(vec2 a)
 {
-    bool within = a.x <= 0.0 && a.y >= 0.0;
-    vec2 m = abs(a);
-    bool turned = m.x > m.y;
-    return vec2(f_pick(within, 0.0, f_pick(turned, m.y, m.x)), f_pick(turned, m.x, m.y));
+    float less = -a.x;
+    return vec2(f_pick(a.x > 0.0, a.x, f_pick(a.y < 0.0, -a.y, 0.0)), f_pick(less > a.y, less, a.y));
 }
 
 vec2 f_ordered(float a, float b)
@@ -86,30 +105,16 @@ vec2 f_hull(vec2 a, vec2 b)
     return vec2(f_pick(b.x < a.x, b.x, a.x), f_pick(b.y > a.y, b.y, a.y));
 }
 
-vec2 f_whole_if(bool condition, vec2 a)
-{
-    return mix(a, F_WHOLE, bvec2(condition));
-}
-
 //: length
-/* For what lengths go into: squares that are denormal may be lost, and 3 of them are worth less than 2^-62. */
-#define F_LOST 2.1684043e-19
-
-precise vec2 f_widen_length(vec2 a, float units)
-{
-    precise vec2 amount = abs(a) * (units * F_U) + F_LOST;
-    return f_settle(f_apart(a, amount));
-}
-
-/* Of magnitudes: each side's sum errs by 2 (or 3) units, its root by half of that and 4.5. */
+/* Of magnitudes. */
 vec2 f_length(vec2 a, vec2 b)
 {
-    return f_not_negative(f_widen_length(vec2(f_length(a.x, b.x), f_length(a.y, b.y)), 12.0), true);
+    return f_widen_root(vec2(f_length(a.x, b.x), f_length(a.y, b.y)));
 }
 
 vec2 f_length(vec2 a, vec2 b, vec2 c)
 {
-    return f_not_negative(f_widen_length(vec2(f_length(a.x, b.x, c.x), f_length(a.y, b.y, c.y)), 13.0), true);
+    return f_widen_root(vec2(f_length(a.x, b.x, c.x), f_length(a.y, b.y, c.y)));
 }
 
 //: neg
@@ -121,22 +126,21 @@ vec2 f_neg(vec2 a)
 //: abs
 vec2 f_abs(vec2 a)
 {
-    return f_whole_if(f_is_whole(a), f_magnitude(a));
+    return f_magnitude(a);
 }
 
 //: sqrt
 vec2 f_sqrt(vec2 a)
 {
-    vec2 r = f_not_negative(f_widen(sqrt(f_magnitude(a)), 10.0), true);
-    return f_whole_if(a.x < 0.0, r);
+    return f_whole_if(a.x < 0.0, f_widen_root(sqrt(a)));
 }
 
 //: square
 precise vec2 f_square(vec2 a)
 {
     vec2 m = f_magnitude(a);
-    precise vec2 e = m * m;
-    return f_whole_if(f_is_whole(a), f_not_negative(f_widen(e, 1.0), true));
+    precise vec2 r = m * m;
+    return r;
 }
 
 //: wave
@@ -151,18 +155,16 @@ bool f_holds_whole_number(vec2 turns)
 /* Where the reduction holds: quarters of 13 bits. */
 bool f_is_reducible(vec2 a)
 {
-    return a.x >= -12867.0 && a.y <= 12867.0;
+    bool first = a.x >= -12867.0, second = a.y <= 12867.0;
+    return first && second;
 }
 
 /* Bounds of a sine or cosine from those at the ends and whether a crest and a trough lie between. */
 vec2 f_swing(vec2 a, vec2 e, bool crest, bool trough)
 {
     vec2 r = f_widen(e, 9.0);
-    bool low = trough || r.x < -1.0, high = crest || r.y > 1.0;
-    r = vec2(f_pick(low, -1.0, r.x), f_pick(high, 1.0, r.y));
-    r = mix(vec2(-1.0, 1.0), r, bvec2(f_is_reducible(a)));
-    bool endless = f_is_endless(a.x) || f_is_endless(a.y);
-    return f_whole_if(endless, r);
+    bool low = r.x < -1.0, high = r.y > 1.0, far = !f_is_reducible(a);
+    return vec2(f_pick(trough || low || far, -1.0, r.x), f_pick(crest || high || far, 1.0, r.y));
 }
 
 //: sin wave
@@ -192,21 +194,21 @@ precise vec2 f_tan(vec2 a)
 //: asin
 vec2 f_asin(vec2 a)
 {
-    bool outside = a.x < -1.0 || a.y > 1.0;
-    return f_whole_if(outside, f_widen(vec2(f_asin(a.x), f_asin(a.y)), 9.0));
+    bool low = a.x < -1.0, high = a.y > 1.0;
+    return f_whole_if(low || high, f_widen(vec2(f_asin(a.x), f_asin(a.y)), 9.0));
 }
 
 //: acos
 vec2 f_acos(vec2 a)
 {
-    bool outside = a.x < -1.0 || a.y > 1.0;
-    return f_whole_if(outside, f_not_negative(f_widen(vec2(f_acos(a.y), f_acos(a.x)), 9.0), true));
+    bool low = a.x < -1.0, high = a.y > 1.0;
+    return f_whole_if(low || high, f_not_negative(f_widen(vec2(f_acos(a.y), f_acos(a.x)), 9.0)));
 }
 
 //: atan
 vec2 f_atan(vec2 a)
 {
-    return f_whole_if(f_is_whole(a), f_widen(vec2(f_atan(a.x), f_atan(a.y)), 9.0));
+    return f_widen(vec2(f_atan(a.x), f_atan(a.y)), 9.0);
 }
 
 //: atan2
@@ -215,23 +217,21 @@ vec2 f_atan2(vec2 y, vec2 x)
     vec2 low = f_ordered(f_atan2(y.x, x.x), f_atan2(y.x, x.y));
     vec2 high = f_ordered(f_atan2(y.y, x.x), f_atan2(y.y, x.y));
     vec2 r = f_widen(f_hull(low, high), 9.0);
-    bool level = y.x <= 0.0 && y.y >= 0.0, behind = x.x <= 0.0;
-    r = mix(r, vec2(-3.1415932, 3.1415932), bvec2(level && behind));
-    bool either = f_is_whole(y), other = f_is_whole(x);
-    return f_whole_if(either || other, r);
+    bool under = y.x <= 0.0, over = y.y >= 0.0, behind = x.x <= 0.0;
+    bool around = under && over;
+    return mix(r, vec2(-3.1415932, 3.1415932), bvec2(around && behind));
 }
 
 //: exp
 vec2 f_exp(vec2 a)
 {
-    vec2 r = f_not_negative(f_widen(vec2(f_exp(a.x), f_exp(a.y)), 9.0), true);
-    return f_whole_if(f_is_whole(a), r);
+    return f_not_negative(f_widen(vec2(f_exp(a.x), f_exp(a.y)), 9.0));
 }
 
 //: ln
 vec2 f_ln(vec2 a)
 {
-    return f_whole_if(a.x < 0.0, f_widen(vec2(f_ln(a.x), f_ln(a.y)), 9.0));
+    return f_whole_if(a.x < 0.0, f_finite(f_widen(vec2(f_ln(a.x), f_ln(a.y)), 9.0)));
 }
 
 //: floor
@@ -262,48 +262,40 @@ vec2 f_not(vec2 a)
 //: add
 precise vec2 f_add(vec2 a, vec2 b)
 {
-    precise vec2 e = a + b;
-    bool first = a.x >= 0.0, second = b.x >= 0.0;
-    return f_not_negative(f_widen(e, 1.0), first && second);
+    precise vec2 r = a + b;
+    return r;
 }
 
 precise vec2 f_add(vec2 a, float b)
 {
-    precise vec2 e = a + b;
-    bool first = a.x >= 0.0, second = b >= 0.0;
-    return f_not_negative(f_widen(e, 1.0), first && second);
+    precise vec2 r = a + b;
+    return r;
 }
 
 //: sub
 precise vec2 f_sub(vec2 a, vec2 b)
 {
-    precise vec2 e = a - b.yx;
-    return f_widen(e, 1.0);
+    precise vec2 r = a - b.yx;
+    return r;
 }
 
 precise vec2 f_sub(vec2 a, float b)
 {
-    precise vec2 e = a - b;
-    return f_widen(e, 1.0);
+    precise vec2 r = a - b;
+    return r;
 }
 
 //: mul
 precise vec2 f_mul(vec2 a, vec2 b)
 {
     precise vec4 e = a.xxyy * b.xyxy;
-    precise float sum = (e.x + e.y) + (e.z + e.w); /* NaN where one is, or where both infinities are: either way all */
-    vec2 r = f_widen(f_hull(f_ordered(e.x, e.y), f_ordered(e.z, e.w)), 1.0);
-    bool positive = a.x >= 0.0 && b.x >= 0.0, negative = a.y <= 0.0 && b.y <= 0.0;
-    return f_whole_if(f_is_nan(sum), f_not_negative(r, positive || negative));
+    return f_hull(f_ordered(e.x, e.y), f_ordered(e.z, e.w));
 }
 
 precise vec2 f_mul(vec2 a, float b)
 {
     precise vec2 e = a * b;
-    bool flip = b < 0.0;
-    vec2 r = f_widen(mix(e, e.yx, bvec2(flip)), 1.0);
-    bool positive = a.x >= 0.0 && b >= 0.0, negative = a.y <= 0.0 && flip;
-    return f_whole_if(f_is_nan(e), f_not_negative(r, positive || negative));
+    return mix(e, e.yx, bvec2(b < 0.0));
 }
 
 //: div
@@ -311,50 +303,41 @@ precise vec2 f_mul(vec2 a, float b)
 precise vec2 f_div(vec2 a, vec2 b)
 {
     precise vec4 e = a.xxyy / b.xyxy;
-    precise float sum = (e.x + e.y) + (e.z + e.w);
     vec2 r = f_widen(f_hull(f_ordered(e.x, e.y), f_ordered(e.z, e.w)), 6.0);
-    bool positive = a.x >= 0.0 && b.x >= 0.0, negative = a.y <= 0.0 && b.y <= 0.0;
-    bool zero = b.x <= 0.0 && b.y >= 0.0, far = b.x < -8.5e37 || b.y > 8.5e37, unknown = f_is_nan(sum);
-    return f_whole_if(zero || far || unknown, f_not_negative(r, positive || negative));
+    bool under = b.x < 1.17549435e-38, over = b.y > -1.17549435e-38;
+    bool zero = under && over, low = b.x < -8.5e37, high = b.y > 8.5e37;
+    return f_whole_if(zero || low || high, f_finite(r));
 }
 
 precise vec2 f_div(vec2 a, float b)
 {
     precise vec2 e = a / b;
-    bool flip = b < 0.0, positive = a.x >= 0.0 && b > 0.0;
-    vec2 r = f_not_negative(f_widen(mix(e, e.yx, bvec2(flip)), 6.0), positive);
-    bool zero = b == 0.0, far = abs(b) > 8.5e37, unknown = f_is_nan(e);
-    return f_whole_if(zero || far || unknown, r);
+    vec2 r = f_widen(mix(e, e.yx, bvec2(b < 0.0)), 6.0);
+    float m = abs(b);
+    bool zero = m < 1.17549435e-38, far = m > 8.5e37;
+    return f_whole_if(zero || far, f_finite(r));
 }
 
 //: min
 vec2 f_min(vec2 a, vec2 b)
 {
-    bool first = f_is_whole(a), second = f_is_whole(b);
-    vec2 r = vec2(f_pick(b.x < a.x, b.x, a.x), f_pick(b.y < a.y, b.y, a.y));
-    return f_whole_if(first || second, r);
+    return vec2(f_pick(b.x < a.x, b.x, a.x), f_pick(b.y < a.y, b.y, a.y));
 }
 
 vec2 f_min(vec2 a, float b)
 {
-    vec2 r = vec2(f_pick(b < a.x, b, a.x), f_pick(b < a.y, b, a.y));
-    bool first = f_is_whole(a), second = f_is_nan(b);
-    return f_whole_if(first || second, r);
+    return vec2(f_pick(b < a.x, b, a.x), f_pick(b < a.y, b, a.y));
 }
 
 //: max
 vec2 f_max(vec2 a, vec2 b)
 {
-    bool first = f_is_whole(a), second = f_is_whole(b);
-    vec2 r = vec2(f_pick(b.x > a.x, b.x, a.x), f_pick(b.y > a.y, b.y, a.y));
-    return f_whole_if(first || second, r);
+    return vec2(f_pick(b.x > a.x, b.x, a.x), f_pick(b.y > a.y, b.y, a.y));
 }
 
 vec2 f_max(vec2 a, float b)
 {
-    vec2 r = vec2(f_pick(b > a.x, b, a.x), f_pick(b > a.y, b, a.y));
-    bool first = f_is_whole(a), second = f_is_nan(b);
-    return f_whole_if(first || second, r);
+    return vec2(f_pick(b > a.x, b, a.x), f_pick(b > a.y, b, a.y));
 }
 
 //: mod
@@ -366,8 +349,9 @@ precise vec2 f_mod(vec2 a, vec2 b)
     vec2 ends = f_hull(f_ordered(turns.x, turns.y), f_ordered(turns.z, turns.w));
     precise vec2 wide = f_apart(ends, abs(ends) * 9.5367432e-07 + 9.5367432e-07);
     float q = floor(ends.x);
-    bool shift = floor(wide.x) == floor(wide.y) && abs(wide.x) < 4e6 && abs(wide.y) < 4e6;
-    shift = shift || (q == 0.0 && a.x >= 0.0 && a.y < m.x);
+    bool same = floor(wide.x) == floor(wide.y), exact = max(abs(wide.x), abs(wide.y)) < 4e6;
+    bool none = a.x >= 0.0 && a.y < m.x;
+    bool shift = (same && exact) || (q == 0.0 && none);
     precise vec2 multiples = f_ordered(q * m.x, q * m.y);
     precise vec2 rest = a - multiples.yx;
     precise vec2 lost = (abs(multiples.yx) + m.yy) * (4.0 * F_U) + F_TINY;
@@ -375,18 +359,15 @@ precise vec2 f_mod(vec2 a, vec2 b)
     precise float whole = a.y + a.y * (4.0 * F_U); /* of what is positive nothing is left that is larger */
     float most = f_pick(a.x >= 0.0 && whole < m.y, whole, m.y);
     vec2 r = vec2(f_pick(shift && rest.x > 0.0, rest.x, 0.0), f_pick(shift && rest.y < most, rest.y, most));
-    bool zero = b.x <= 0.0 && b.y >= 0.0, far = m.y > 8.5e37;
-    bool endless = max(floatBitsToInt(abs(a.x)), floatBitsToInt(abs(a.y))) >= 0x7f800000;
-    return f_whole_if(zero || far || endless, r);
+    bool zero = m.x < 1.17549435e-38, far = m.y > 8.5e37;
+    return f_whole_if(zero || far, r);
 }
 
 //: compare
 vec2 f_compare(vec2 a, vec2 b)
 {
     bool less = a.y < b.x, more = a.x > b.y, not_less = a.x >= b.y, not_more = a.y <= b.x;
-    vec2 r = vec2(f_pick(more, 1.0, f_pick(not_less, 0.0, -1.0)), f_pick(less, -1.0, f_pick(not_more, 0.0, 1.0)));
-    bool first = f_is_whole(a), second = f_is_whole(b);
-    return f_whole_if(first || second, r);
+    return vec2(f_pick(more, 1.0, f_pick(not_less, 0.0, -1.0)), f_pick(less, -1.0, f_pick(not_more, 0.0, 1.0)));
 }
 
 //: and
@@ -406,99 +387,80 @@ vec2 f_or(vec2 a, vec2 b)
 //: shift
 precise vec2 f_shift(vec2 a, float s)
 {
-    precise vec2 e = a + s;
-    return f_widen(e, 1.0);
+    precise vec2 r = a + s;
+    return r;
 }
 
 //: affine
-/* Bounds of p a, and what its rounding can lose (with the room that later sums need added by the callers). */
 precise vec2 f_term(vec2 a, float p)
 {
     precise vec2 e = a * p;
     return mix(e, e.yx, bvec2(p < 0.0));
 }
 
-/* A sum of up to four terms of total size `size`: a unit for each product and at most three sums. */
-precise vec2 f_sum_bounds(vec2 sum, vec2 size)
-{
-    return f_settle(f_apart(sum, size * (5.0 * F_U) + F_TINY));
-}
-
 precise vec2 f_affine(vec2 a, float p, float s)
 {
-    precise vec2 t = f_term(a, p);
-    precise vec2 sum = t + s, size = abs(t) + abs(s);
-    return f_sum_bounds(sum, size);
+    precise vec2 sum = f_term(a, p) + s;
+    return sum;
 }
 
 precise vec2 f_affine(vec2 a, vec2 b, float p, float q, float s)
 {
-    precise vec2 t = f_term(a, p), u = f_term(b, q);
-    precise vec2 sum = t + u + s, size = abs(t) + abs(u) + abs(s);
-    return f_sum_bounds(sum, size);
+    precise vec2 sum = f_term(a, p) + f_term(b, q) + s;
+    return sum;
 }
 
 precise vec2 f_affine(vec2 a, vec2 b, vec2 c, float p, float q, float r, float s)
 {
-    precise vec2 t = f_term(a, p), u = f_term(b, q), v = f_term(c, r);
-    precise vec2 sum = t + u + v + s, size = abs(t) + abs(u) + abs(v) + abs(s);
-    return f_sum_bounds(sum, size);
+    precise vec2 sum = f_term(a, p) + f_term(b, q) + f_term(c, r) + s;
+    return sum;
 }
 
 //: sphere length
 /* Shapes that grow with the size of every coordinate have their bounds at the least and the greatest sizes. */
 precise vec2 f_sphere(vec2 a, vec2 b, vec2 c, float radius)
 {
-    precise vec2 e = f_length(f_magnitude(a), f_magnitude(b), f_magnitude(c)) - radius;
-    return f_finite(f_widen(e, 1.0));
+    precise vec2 r = f_length(f_magnitude(a), f_magnitude(b), f_magnitude(c)) - radius;
+    return r;
 }
 
 //: box length
-/* Relative errors, for the two parts are never mixed: outside 2 units for the squares, 3 for the sum, halved by the
- * root, and 4.5 for it. */
+/* Outside it is a root, inside it is exact. */
 vec2 f_box(vec2 a, vec2 b, vec2 c, float p, float q, float r)
 {
     vec2 x = f_magnitude(a), y = f_magnitude(b), z = f_magnitude(c);
-    vec2 e = vec2(f_box(x.x, y.x, z.x, p, q, r), f_box(x.y, y.y, z.y, p, q, r));
-    return f_finite(f_widen_length(e, 16.0));
+    return f_widen(vec2(f_box(x.x, y.x, z.x, p, q, r), f_box(x.y, y.y, z.y, p, q, r)), 10.0);
 }
 
 //: rounded_box box
 precise vec2 f_rounded_box(vec2 a, vec2 b, vec2 c, float p, float q, float r, float radius)
 {
     precise vec2 e = f_box(a, b, c, p, q, r) - radius;
-    return f_finite(f_widen(e, 1.0));
+    return e;
 }
 
 //: torus length
 precise vec2 f_torus(vec2 a, vec2 b, vec2 c, float major, float minor)
 {
     precise vec2 ring = f_length(f_magnitude(a), f_magnitude(c)) - major;
-    precise vec2 e = f_length(f_magnitude(f_widen(ring, 1.0)), f_magnitude(b)) - minor;
-    return f_finite(f_widen(e, 1.0));
-}
-
-//: profile length
-vec2 f_corner(vec2 x, vec2 y)
-{
-    return f_widen_length(vec2(f_corner(x.x, y.x), f_corner(x.y, y.y)), 12.0);
+    precise vec2 r = f_length(f_magnitude(ring), f_magnitude(b)) - minor;
+    return r;
 }
 
 //: cylinder profile
 precise vec2 f_cylinder(vec2 a, vec2 b, vec2 c, float radius, float half_height)
 {
     precise vec2 x = f_length(f_magnitude(a), f_magnitude(c)) - radius, y = f_magnitude(b) - half_height;
-    return f_finite(f_corner(f_widen(x, 1.0), f_widen(y, 1.0)));
+    return f_widen(vec2(f_corner(x.x, y.x), f_corner(x.y, y.y)), 10.0);
 }
 
 //: capsule length
 precise vec2 f_capsule(vec2 a, vec2 b, vec2 c, float radius, float half_height)
 {
     precise vec2 y = f_magnitude(b) - half_height;
-    y = f_widen(y, 1.0);
-    y = vec2(f_positive(y.x), f_positive(y.y));
-    precise vec2 e = f_length(f_magnitude(a), y, f_magnitude(c)) - radius;
-    return f_finite(f_widen(e, 1.0));
+    vec2 over = vec2(f_positive(y.x), f_positive(y.y));
+    precise vec2 r = f_length(f_magnitude(a), over, f_magnitude(c)) - radius;
+    return r;
 }
 
 //: cone length
@@ -519,7 +481,7 @@ precise vec2 f_cone(vec2 a, vec2 b, vec2 c, float bottom, float top, float half_
     precise float above = f_frustum_distance(f_around_frustum(r.y, b.y, bottom, top, half_height, u, v, slant, mean));
     precise vec2 e = vec2(least, f_pick(below > above, below, above));
     precise float size = r.y + f_magnitude(b).y + bottom + top + half_height;
-    return f_finite(f_apart(e, vec2(size * (56.0 * F_U) + F_LOST)));
+    return f_apart(e, vec2(size * (56.0 * F_U) + 4.3368087e-19)); /* squares below 2^-126 may be lost */
 }
 
 //: blend
@@ -527,7 +489,7 @@ precise vec2 f_cone(vec2 a, vec2 b, vec2 c, float bottom, float top, float half_
 precise vec2 f_blend_bounds(vec2 e, float size, float units)
 {
     precise vec2 amount = vec2(size * (units * F_U) + F_TINY);
-    return f_finite(f_widen(f_apart(e, amount), 2.0));
+    return f_widen(f_apart(e, amount), 2.0);
 }
 
 //: blend_quadratic blend

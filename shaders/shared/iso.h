@@ -102,8 +102,7 @@ struct hewn_spread_push {
     HEWN_UINTS vertex_bases;
     HEWN_UINTS triangle_bases;
     HEWN_UINTS vertices; /* out: slot and 512 * axis + sample in the first two words of each position */
-    HEWN_UINTS
-        indices; /* out: slot, and sample + 512 * pattern + 131072 * triangle, in each triangle's first two words */
+    HEWN_UINTS indices;  /* out: slot, sample + 512 * pattern + 131072 * triangle in each triangle's first two words */
 };
 
 struct hewn_vertex_push {

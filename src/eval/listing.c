@@ -85,10 +85,14 @@ static void put_parameters(hewn_listing *listing, hewn_code_step *step, const he
     }
 }
 
-static bool takes_plain_number(hewn_op op)
+/* Whether the operand is handed over as a bare number: a finite constant, to operations that have a form for it. */
+static bool is_plain(const hewn_listing *listing, const hewn_code_step *step, uint32_t i)
 {
-    return op == HEWN_OP_ADD || op == HEWN_OP_SUB || op == HEWN_OP_MUL || op == HEWN_OP_DIV || op == HEWN_OP_MIN ||
-           op == HEWN_OP_MAX;
+    const hewn_code_step *in = &listing->steps[step->in[i]];
+    hewn_op op = step->op;
+    return i == 1 && in->op == HEWN_OP_CONSTANT && in->sure &&
+           (op == HEWN_OP_ADD || op == HEWN_OP_SUB || op == HEWN_OP_MUL || op == HEWN_OP_DIV || op == HEWN_OP_MIN ||
+            op == HEWN_OP_MAX);
 }
 
 static void add_step(hewn_listing *listing, const hewn_node_data *node, const uint32_t *places)
@@ -106,6 +110,7 @@ static void add_step(hewn_listing *listing, const hewn_node_data *node, const ui
         step->axes = 1u << (node->op - HEWN_OP_X);
     for (uint32_t i = 0; i < step->in_count; i++)
         step->axes |= listing->steps[step->in[i]].axes;
+    hewn_code_step_reach(listing, step);
 }
 
 static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
@@ -167,19 +172,45 @@ static void write_operand(const hewn_listing *listing, uint32_t at, listing_flav
     }
 }
 
+/* Operations that give [-inf, inf] of their own accord where finite operands have no finite result. */
+static bool guards_itself(hewn_op op)
+{
+    return op == HEWN_OP_SQRT || op == HEWN_OP_LN || op == HEWN_OP_ASIN || op == HEWN_OP_ACOS || op == HEWN_OP_TAN ||
+           op == HEWN_OP_DIV || op == HEWN_OP_MOD;
+}
+
+static bool needs_guard(const hewn_listing *listing, const hewn_code_step *step)
+{
+    for (uint32_t i = 0; i < step->in_count; i++)
+        if (!listing->steps[step->in[i]].sure)
+            return true;
+    return !step->sure && !guards_itself(step->op);
+}
+
+static void write_operands(const hewn_listing *listing, const hewn_code_step *step, listing_flavour flavour,
+                           bool always_whole, hewn_text *text)
+{
+    for (uint32_t i = 0; i < step->in_count; i++) {
+        if (i > 0)
+            hewn_text_append_bytes(text, ",", 1);
+        write_operand(listing, step->in[i], flavour, !always_whole && is_plain(listing, step, i), text);
+    }
+}
+
 static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour flavour, hewn_text *text)
 {
     const hewn_code_step *step = &listing->steps[at];
     if (!step->function)
         return;
-    hewn_text_print(text, "%s n%u=f_%s(", types[flavour], at, step->function);
-    for (uint32_t i = 0; i < step->in_count; i++) {
-        if (i > 0)
-            hewn_text_append_bytes(text, ",", 1);
-        write_operand(listing, step->in[i], flavour, i == 1 && takes_plain_number(step->op), text);
-    }
+    bool guard = flavour == INTERVAL && needs_guard(listing, step);
+    hewn_text_print(text, "%s n%u=%sf_%s(", types[flavour], at, guard ? "f_guard(" : "", step->function);
+    write_operands(listing, step, flavour, false, text);
     for (uint32_t i = 0; i < step->parameter_count; i++)
         hewn_text_print(text, ",P(%u)", step->parameter + i);
+    if (guard) {
+        hewn_text_append(text, "),");
+        write_operands(listing, step, flavour, true, text);
+    }
     hewn_text_append(text, ");\n");
 }
 
@@ -188,9 +219,9 @@ static void write_function(const hewn_listing *listing, listing_flavour flavour,
     hewn_text_append(text, opening);
     for (size_t i = 0; i < listing->count; i++)
         write_step(listing, (uint32_t)i, flavour, text);
-    hewn_text_append(text, "return ");
+    hewn_text_append(text, flavour == INTERVAL ? "return f_result(" : "return ");
     write_operand(listing, (uint32_t)(listing->count - 1), flavour, false, text);
-    hewn_text_append(text, ";\n}\n");
+    hewn_text_append(text, flavour == INTERVAL ? ",x,y,z);\n}\n" : ";\n}\n");
 }
 
 /* What does not depend on x comes before the loop over the row's samples. */
@@ -214,10 +245,7 @@ void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_tex
     if (flavours & HEWN_FLAVOUR_POINT)
         write_function(listing, POINT, "float field_point(float x, float y, float z)\n{\n", text);
     if (flavours & HEWN_FLAVOUR_INTERVAL)
-        write_function(listing, INTERVAL,
-                       "vec2 field_interval(vec2 box_x, vec2 box_y, vec2 box_z)\n{\n"
-                       "vec2 x=f_box_side(box_x),y=f_box_side(box_y),z=f_box_side(box_z);\n",
-                       text);
+        write_function(listing, INTERVAL, "vec2 field_interval(vec2 x, vec2 y, vec2 z)\n{\n", text);
     if (flavours & HEWN_FLAVOUR_GRADIENT)
         write_function(listing, GRADIENT,
                        "vec4 field_gradient(float at_x, float at_y, float at_z)\n{\n"

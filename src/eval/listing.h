@@ -18,7 +18,13 @@ typedef struct hewn_code_step {
     uint32_t parameter; /* of the first one */
     uint32_t parameter_count;
     uint32_t axes; /* the variables it depends on */
+    double size;   /* no value is larger, for coordinates up to HEWN_REACH */
+    bool positive; /* no value is below 0, nor are the bounds that intervals give */
+    bool sure; /* for such coordinates intervals are finite here and in all that it depends on: no NaN, no overflow */
 } hewn_code_step;
+
+/* Up to here the emitter knows sizes; farther out intervals are everything. The shader has the same number. */
+#define HEWN_REACH 0x1p30
 
 typedef struct hewn_listing {
     hewn_code_step *steps; /* operands first, the root last */
@@ -26,6 +32,9 @@ typedef struct hewn_listing {
     float *parameters; /* rounded once; what is below the smallest normal number is 0 */
     size_t parameter_count, parameter_capacity;
 } hewn_listing;
+
+/* Fills in size, positive and sure from the operands' (reach.c). */
+void hewn_code_step_reach(const hewn_listing *listing, hewn_code_step *step);
 
 hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, hewn_error *error);
 void hewn_listing_destroy(hewn_listing *listing);

@@ -45,7 +45,7 @@ void hewn_triangle_box(const hewn_triangle_view *mesh, uint32_t triangle, float 
 /* Halved, for no sum of two finite numbers may overflow; a double beyond the floats has an infinite box. */
 static float middle(float lo, float hi)
 {
-    return 0.5F * fmaxf(lo, -FLT_MAX) + 0.5F * fminf(hi, FLT_MAX);
+    return 0.5F * (lo < -FLT_MAX ? -FLT_MAX : lo) + 0.5F * (hi > FLT_MAX ? FLT_MAX : hi);
 }
 
 /* The slots of block b that the level below fills. */
@@ -55,13 +55,23 @@ static int filled(uint64_t below, uint64_t block)
     return left < 4 ? (int)left : 4;
 }
 
+/* No comparison with these holds, and fminf() and fmaxf() pass them by. Infinities would not do: they meet a box that
+ * is infinite itself. */
 static void empty_boxes(hewn_boxes4 *boxes)
 {
     for (int axis = 0; axis < 3; axis++)
         for (int k = 0; k < 4; k++) {
-            boxes->lo[axis][k] = INFINITY;
-            boxes->hi[axis][k] = -INFINITY;
+            boxes->lo[axis][k] = NAN;
+            boxes->hi[axis][k] = NAN;
         }
+}
+
+static void set_box(hewn_boxes4 *boxes, int k, const float lo[3], const float hi[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        boxes->lo[axis][k] = lo[axis];
+        boxes->hi[axis][k] = hi[axis];
+    }
 }
 
 static void box_triangles(const hewn_triangle_view *mesh, const hewn_bvh *bvh, uint64_t block)
@@ -71,10 +81,7 @@ static void box_triangles(const hewn_triangle_view *mesh, const hewn_bvh *bvh, u
     for (int k = 0; k < filled(mesh->triangle_count, block); k++) {
         float lo[3], hi[3];
         hewn_triangle_box(mesh, bvh->order[4 * block + k], lo, hi);
-        for (int axis = 0; axis < 3; axis++) {
-            boxes->lo[axis][k] = lo[axis];
-            boxes->hi[axis][k] = hi[axis];
-        }
+        set_box(boxes, k, lo, hi);
     }
 }
 
@@ -83,12 +90,9 @@ static void box_blocks(const hewn_bvh *bvh, uint32_t level, uint64_t block)
     hewn_boxes4 *boxes = &bvh->level[level][block];
     empty_boxes(boxes);
     for (int k = 0; k < filled(bvh->block_count[level - 1], block); k++) {
-        const hewn_boxes4 *child = &bvh->level[level - 1][4 * block + k];
-        for (int axis = 0; axis < 3; axis++)
-            for (int i = 0; i < 4; i++) {
-                boxes->lo[axis][k] = fminf(boxes->lo[axis][k], child->lo[axis][i]);
-                boxes->hi[axis][k] = fmaxf(boxes->hi[axis][k], child->hi[axis][i]);
-            }
+        float lo[3], hi[3];
+        hewn_boxes4_all(&bvh->level[level - 1][4 * block + k], lo, hi);
+        set_box(boxes, k, lo, hi);
     }
 }
 

@@ -6,12 +6,13 @@
 #ifndef HEWN_SRC_GEOM_BVH_H
 #define HEWN_SRC_GEOM_BVH_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "geom/triangle_view.h"
 #include "hewn/base.h"
 
-/* Four boxes side by side, closed, rounded outward. One with lo above hi is empty. */
+/* Four boxes side by side, closed, rounded outward (to infinity beyond the floats). A slot without one holds NaNs. */
 typedef struct hewn_boxes4 {
     float lo[3][4], hi[3][4];
 } hewn_boxes4;
@@ -48,6 +49,19 @@ typedef struct hewn_bvh_walk {
 
 hewn_bvh_walk hewn_bvh_walk_begin(const hewn_bvh *bvh, const float lo[3], const float hi[3], uint64_t first);
 bool hewn_bvh_walk_next(hewn_bvh_walk *walk, uint64_t *block);
+
+/* The box around all four. */
+static inline void hewn_boxes4_all(const hewn_boxes4 *boxes, float lo[3], float hi[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        lo[axis] = INFINITY;
+        hi[axis] = -INFINITY;
+        for (int k = 0; k < 4; k++) { /* never true of NaNs */
+            lo[axis] = boxes->lo[axis][k] < lo[axis] ? boxes->lo[axis][k] : lo[axis];
+            hi[axis] = boxes->hi[axis][k] > hi[axis] ? boxes->hi[axis][k] : hi[axis];
+        }
+    }
+}
 
 /* Which of four closed boxes meet a closed box, one bit each. */
 static inline unsigned hewn_boxes4_meet(const hewn_boxes4 *boxes, const float lo[3], const float hi[3])

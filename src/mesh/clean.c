@@ -5,41 +5,44 @@
 #include "mesh/soup.h"
 
 /* A face being walked: the corners since the last cut, and where in that pile each vertex is. */
-typedef struct cleaner {
+typedef struct face_cleaner {
     uint32_t *vertices;
     uint32_t *origins;
     uint32_t *place; /* of each vertex in the pile, HEWN_NONE if not there */
     uint64_t *first; /* of the new faces */
     uint32_t *face_origins;
+    uint8_t *turned;
     uint32_t face_count, corner_count;
-} cleaner;
+} face_cleaner;
 
-static hewn_result create_cleaner(const hewn_soup *soup, cleaner *out, hewn_error *error)
+static hewn_result create_cleaner(const hewn_soup *soup, face_cleaner *out, hewn_error *error)
 {
     uint32_t corners = hewn_soup_corner_count(soup);
-    *out = (cleaner){.vertices = hewn_alloc(corners, sizeof *out->vertices),
-                     .origins = hewn_alloc(corners, sizeof *out->origins),
-                     .place = hewn_alloc(soup->vertex_count, sizeof *out->place),
-                     .first = hewn_alloc_zero((size_t)corners / 3 + 2, sizeof *out->first),
-                     .face_origins = hewn_alloc((size_t)corners / 3 + 1, sizeof *out->face_origins)};
-    if (!out->vertices || !out->origins || !out->place || !out->first || !out->face_origins)
+    *out = (face_cleaner){.vertices = hewn_alloc(corners, sizeof *out->vertices),
+                          .origins = hewn_alloc(corners, sizeof *out->origins),
+                          .place = hewn_alloc(soup->vertex_count, sizeof *out->place),
+                          .first = hewn_alloc_zero((size_t)corners / 3 + 2, sizeof *out->first),
+                          .face_origins = hewn_alloc((size_t)corners / 3 + 1, sizeof *out->face_origins)};
+    out->turned = hewn_alloc_zero((size_t)corners / 3 + 1, 1);
+    if (!out->turned || !out->vertices || !out->origins || !out->place || !out->first || !out->face_origins)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory cleaning faces");
     if (soup->vertex_count > 0)
         memset(out->place, 0xFF, soup->vertex_count * sizeof *out->place);
     return HEWN_OK;
 }
 
-static void free_cleaner(cleaner *cleaner)
+static void free_cleaner(face_cleaner *cleaner)
 {
     hewn_free(cleaner->vertices);
     hewn_free(cleaner->origins);
     hewn_free(cleaner->place);
     hewn_free(cleaner->first);
     hewn_free(cleaner->face_origins);
+    hewn_free(cleaner->turned);
 }
 
 /* Takes pile items from `bottom` up as a face, if they are enough. Never writes past the corners already read. */
-static void emit(hewn_soup *soup, cleaner *cleaner, uint32_t face, uint32_t bottom, uint32_t top)
+static void emit(hewn_soup *soup, face_cleaner *cleaner, uint32_t face, uint32_t bottom, uint32_t top)
 {
     for (uint32_t i = bottom; i < top; i++)
         cleaner->place[cleaner->vertices[i]] = HEWN_NONE;
@@ -54,7 +57,7 @@ static void emit(hewn_soup *soup, cleaner *cleaner, uint32_t face, uint32_t bott
 }
 
 /* Whether the face was more than simply taken over. */
-static bool clean_face(hewn_soup *soup, cleaner *cleaner, uint32_t face)
+static bool clean_face(hewn_soup *soup, face_cleaner *cleaner, uint32_t face)
 {
     uint32_t height = 0;
     bool repeated = false;
@@ -75,7 +78,7 @@ static bool clean_face(hewn_soup *soup, cleaner *cleaner, uint32_t face)
 }
 
 /* The first face that cleaning would touch. */
-static hewn_result refuse(const hewn_soup *soup, cleaner *cleaner, hewn_error *error)
+static hewn_result refuse(const hewn_soup *soup, face_cleaner *cleaner, hewn_error *error)
 {
     for (uint32_t f = 0; f < soup->face_count; f++) {
         uint64_t begin = soup->first[f], end = soup->first[f + 1];
@@ -112,7 +115,7 @@ static hewn_result drop_flat_faces(hewn_soup *soup, bool strict, hewn_repair_rep
     return HEWN_OK;
 }
 
-static void clean_faces(hewn_soup *soup, cleaner *cleaner, hewn_repair_report *report)
+static void clean_faces(hewn_soup *soup, face_cleaner *cleaner, hewn_repair_report *report)
 {
     for (uint32_t f = 0; f < soup->face_count; f++) {
         uint32_t before = cleaner->face_count;
@@ -122,16 +125,19 @@ static void clean_faces(hewn_soup *soup, cleaner *cleaner, hewn_repair_report *r
     }
     hewn_free(soup->first);
     hewn_free(soup->face_origins);
+    hewn_free(soup->turned);
     soup->first = cleaner->first;
     soup->face_origins = cleaner->face_origins;
     soup->face_count = cleaner->face_count;
     cleaner->first = NULL;
     cleaner->face_origins = NULL;
+    soup->turned = cleaner->turned;
+    cleaner->turned = NULL;
 }
 
 hewn_result hewn_soup_clean(hewn_soup *soup, bool drop_flat, bool strict, hewn_repair_report *report, hewn_error *error)
 {
-    cleaner cleaner;
+    face_cleaner cleaner;
     size_t room = hewn_soup_corner_count(soup) / 3;
     hewn_result result = create_cleaner(soup, &cleaner, error);
     if (result == HEWN_OK && strict)
@@ -139,7 +145,7 @@ hewn_result hewn_soup_clean(hewn_soup *soup, bool drop_flat, bool strict, hewn_r
     else if (result == HEWN_OK) {
         clean_faces(soup, &cleaner, report);
         soup->first_capacity = room + 2;
-        soup->face_capacity = room + 1;
+        soup->face_capacity = soup->turned_capacity = room + 1;
     }
     free_cleaner(&cleaner);
     if (result == HEWN_OK && drop_flat)

@@ -97,8 +97,7 @@ static bool stays(uint32_t face, uint32_t lowest, const face_class *twins, hewn_
         return false;
     switch (opposite) {
     case HEWN_OPPOSITE_KEEP: return true;
-    case HEWN_OPPOSITE_CANCEL:
-        return face == lowest ? twins->alike > twins->opposite : twins->opposite > twins->alike;
+    case HEWN_OPPOSITE_CANCEL: return face == lowest ? twins->alike > twins->opposite : twins->opposite > twins->alike;
     default: return face == lowest;
     }
 }
@@ -109,10 +108,9 @@ hewn_result hewn_soup_drop_duplicates(hewn_soup *soup, hewn_opposite opposite, b
     uint32_t *lowest = hewn_alloc(soup->face_count, sizeof *lowest);
     face_class *classes = hewn_alloc(soup->face_count, sizeof *classes);
     uint8_t *keep = hewn_alloc(soup->face_count, 1);
-    hewn_result result = lowest && classes && keep
-                             ? classify(soup, lowest, classes, error)
-                             : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory comparing %u faces",
-                                         soup->face_count);
+    hewn_result result = lowest && classes && keep ? classify(soup, lowest, classes, error)
+                                                   : hewn_fail(error, HEWN_OUT_OF_MEMORY,
+                                                               "out of memory comparing %u faces", soup->face_count);
     uint64_t dropped = 0;
     for (uint32_t f = 0; result == HEWN_OK && f < soup->face_count; f++) {
         keep[f] = stays(f, lowest[f], classes + lowest[f], opposite);

@@ -11,17 +11,17 @@ typedef struct island {
     bool removed;
 } island;
 
-static void grow(island *island, const double *p)
+static void grow(island *at, const double *p)
 {
     for (int axis = 0; axis < 3; axis++) {
-        island->lo[axis] = fmin(island->lo[axis], p[axis]);
-        island->hi[axis] = fmax(island->hi[axis], p[axis]);
+        at->lo[axis] = fmin(at->lo[axis], p[axis]);
+        at->hi[axis] = fmax(at->hi[axis], p[axis]);
     }
 }
 
-static double diagonal(const island *island)
+static double diagonal(const island *at)
 {
-    return hypot(hypot(island->hi[0] - island->lo[0], island->hi[1] - island->lo[1]), island->hi[2] - island->lo[2]);
+    return hypot(hypot(at->hi[0] - at->lo[0], at->hi[1] - at->lo[1]), at->hi[2] - at->lo[2]);
 }
 
 static const island nowhere = {0, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false};

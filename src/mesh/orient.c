@@ -1,4 +1,4 @@
-#include <string.h>
+#include <math.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -67,28 +67,27 @@ static void orient_components(const hewn_soup *soup, const hewn_sides *sides, co
     }
 }
 
-hewn_result hewn_soup_orient(hewn_soup *soup, bool strict, uint8_t *turned, hewn_error *error)
+hewn_result hewn_soup_orient(hewn_soup *soup, bool strict, hewn_error *error)
 {
     uint32_t corners = hewn_soup_corner_count(soup);
     hewn_sides sides;
     HEWN_TRY(hewn_sides_build(soup, &sides, error));
     uint32_t *link = hewn_alloc(corners, sizeof *link), *queue = hewn_alloc(soup->face_count, sizeof *queue);
-    uint8_t *seen = hewn_alloc_zero(soup->face_count, 1);
+    uint8_t *seen = hewn_alloc_zero(soup->face_count, 1), *turned = hewn_alloc_zero(soup->face_count, 1);
     hewn_result result = HEWN_OK;
-    if (!link || !queue || !seen) {
+    if (!link || !queue || !seen || !turned) {
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory orienting %u faces", soup->face_count);
     } else {
         link_pairs(&sides, corners, link);
         if (strict)
             result = refuse(soup, &sides, link, error);
-        if (soup->face_count > 0)
-            memset(turned, 0, soup->face_count);
         if (result == HEWN_OK)
             orient_components(soup, &sides, link, queue, seen, turned);
         for (uint32_t f = 0; result == HEWN_OK && f < soup->face_count; f++)
             if (turned[f])
                 hewn_soup_turn_face(soup, f);
     }
+    hewn_free(turned);
     hewn_free(seen);
     hewn_free(queue);
     hewn_free(link);
@@ -98,34 +97,56 @@ hewn_result hewn_soup_orient(hewn_soup *soup, bool strict, uint8_t *turned, hewn
 
 /* --- components against the outside ------------------------------------------------------------------------------- */
 
+/* A volume below this share of what it was summed from is taken for rounding. */
+static const double least_volume = 1e-12;
+
 /* What is known of a component, at its lowest vertex. */
 typedef struct shell {
-    double volume; /* × 6, about that vertex */
-    bool open, touched;
+    double volume, size; /* × 6, about that vertex: the sum, and that of the absolute values */
+    bool open, touched, inverted;
 } shell;
 
-static void measure_shells(const hewn_soup *soup, const uint32_t *mates, uint32_t *parent, const uint8_t *turned,
-                           shell *shells)
+static void measure_shells(const hewn_soup *soup, const hewn_sides *sides, uint32_t *parent, shell *shells)
 {
     for (uint32_t f = 0; f < soup->face_count; f++) {
-        uint32_t root = hewn_sets_find(parent, soup->corners[soup->first[f]]);
-        const double *o = soup->positions + 3 * (size_t)root;
+        shell *at = shells + hewn_sets_find(parent, soup->corners[soup->first[f]]);
+        const double *o = soup->positions + 3 * (size_t)(at - shells);
         const double *p = soup->positions + 3 * (size_t)soup->corners[soup->first[f]];
         double normal[3];
         hewn_soup_face_normal(soup, f, normal);
-        for (int axis = 0; axis < 3; axis++)
-            shells[root].volume += (p[axis] - o[axis]) * normal[axis];
-        shells[root].touched = shells[root].touched || turned[f];
-        for (uint64_t c = soup->first[f]; c < soup->first[f + 1]; c++)
-            shells[root].open = shells[root].open || mates[c] == HEWN_NONE;
+        for (int axis = 0; axis < 3; axis++) {
+            at->volume += (p[axis] - o[axis]) * normal[axis];
+            at->size += fabs((p[axis] - o[axis]) * normal[axis]);
+        }
+        at->touched = at->touched || soup->turned[f];
     }
+    for (uint32_t g = 0; g < sides->count; g++)
+        if (sides->group[g + 1] - sides->group[g] == 1)
+            shells[hewn_sets_find(parent, soup->corners[sides->sides[sides->group[g]]])].open = true;
 }
 
-hewn_result hewn_soup_turn_outward(hewn_soup *soup, const uint32_t *mates, hewn_outward outward, uint8_t *turned,
-                                   hewn_repair_report *report, hewn_error *error)
+static void turn_shells(hewn_soup *soup, uint32_t *parent, shell *shells, hewn_outward outward,
+                        hewn_repair_report *report)
 {
-    if (outward == HEWN_OUTWARD_NEVER)
+    for (uint32_t v = 0; v < soup->vertex_count; v++) {
+        shell *s = shells + v;
+        s->inverted = !s->open && s->volume < -least_volume * s->size && (s->touched || outward == HEWN_OUTWARD_ALWAYS);
+        report->turned_components += s->inverted;
+    }
+    for (uint32_t f = 0; f < soup->face_count; f++)
+        if (shells[hewn_sets_find(parent, soup->corners[soup->first[f]])].inverted)
+            hewn_soup_turn_face(soup, f);
+}
+
+hewn_result hewn_soup_turn_outward(hewn_soup *soup, hewn_outward outward, hewn_repair_report *report, hewn_error *error)
+{
+    bool any = outward == HEWN_OUTWARD_ALWAYS;
+    for (uint32_t f = 0; outward == HEWN_OUTWARD_TURNED && !any && f < soup->face_count; f++)
+        any = soup->turned[f];
+    if (!any)
         return HEWN_OK;
+    hewn_sides sides;
+    HEWN_TRY(hewn_sides_build(soup, &sides, error));
     uint32_t *parent = hewn_sets_create(soup->vertex_count);
     shell *shells = hewn_alloc_zero(soup->vertex_count, sizeof *shells);
     hewn_result result = HEWN_OK;
@@ -133,19 +154,11 @@ hewn_result hewn_soup_turn_outward(hewn_soup *soup, const uint32_t *mates, hewn_
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory turning components");
     } else {
         hewn_soup_join_faces(soup, parent);
-        measure_shells(soup, mates, parent, turned, shells);
-        for (uint32_t v = 0; v < soup->vertex_count; v++) {
-            shell *s = shells + v;
-            s->touched = !s->open && s->volume < 0 && (s->touched || outward == HEWN_OUTWARD_ALWAYS);
-            report->turned_components += s->touched;
-        }
-        for (uint32_t f = 0; f < soup->face_count; f++)
-            if (shells[hewn_sets_find(parent, soup->corners[soup->first[f]])].touched) {
-                hewn_soup_turn_face(soup, f);
-                turned[f] ^= 1;
-            }
+        measure_shells(soup, &sides, parent, shells);
+        turn_shells(soup, parent, shells, outward, report);
     }
     hewn_free(shells);
     hewn_free(parent);
+    hewn_sides_free(&sides);
     return result;
 }

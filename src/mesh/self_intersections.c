@@ -102,16 +102,6 @@ static void slot_box(const hewn_boxes4 *boxes, int k, float lo[3], float hi[3])
     }
 }
 
-static void block_box(const hewn_boxes4 *boxes, float lo[3], float hi[3])
-{
-    slot_box(boxes, 0, lo, hi);
-    for (int k = 1; k < 4; k++)
-        for (int axis = 0; axis < 3; axis++) {
-            lo[axis] = fminf(lo[axis], boxes->lo[axis][k]);
-            hi[axis] = fmaxf(hi[axis], boxes->hi[axis][k]);
-        }
-}
-
 /* The pairs of a face in slot k of a block (its facet given) and the faces in the later slots of `other`. */
 static uint64_t count_in_block(const search *find, uint64_t block, int k, const hewn_facet *facet, uint64_t other)
 {
@@ -145,7 +135,7 @@ static uint64_t count_for_block(const search *find, uint64_t block)
     for (int k = 0; k < count; k++)
         load_facet(find->mesh, find->bvh.order[4 * block + k], &facets[k]);
     float lo[3], hi[3];
-    block_box(&find->bvh.level[0][block], lo, hi);
+    hewn_boxes4_all(&find->bvh.level[0][block], lo, hi);
     hewn_bvh_walk walk = hewn_bvh_walk_begin(&find->bvh, lo, hi, block);
     uint64_t found = 0, other;
     while (hewn_bvh_walk_next(&walk, &other))

@@ -74,6 +74,8 @@ hewn_result hewn_soup_create(const hewn_polygons *polygons, hewn_soup *out, hewn
             soup.first[f] = polygons->first ? polygons->first[f] : 3 * f;
         number(soup.vertex_origins, soup.vertex_count);
         number(soup.face_origins, soup.face_count);
+        for (uint64_t f = 0; f < faces; f++)
+            soup.turned[f] = 0;
         number(soup.corner_origins, (uint32_t)corners);
         result = check_values(&soup, error);
     }
@@ -90,6 +92,7 @@ void hewn_soup_destroy(hewn_soup *soup)
     hewn_free(soup->vertex_origins);
     hewn_free(soup->first);
     hewn_free(soup->face_origins);
+    hewn_free(soup->turned);
     hewn_free(soup->corners);
     hewn_free(soup->corner_origins);
     *soup = (hewn_soup){0};
@@ -123,6 +126,10 @@ hewn_result hewn_soup_reserve(hewn_soup *soup, uint64_t vertices, uint64_t faces
     HEWN_TRY(result);
     if (fresh)
         soup->first[0] = 0;
+    void *turned = soup->turned;
+    result = hewn_reserve(&turned, &soup->turned_capacity, faces, 1, error);
+    soup->turned = turned;
+    HEWN_TRY(result);
     HEWN_TRY(grow(&soup->vertex_origins, &soup->vertex_capacity, vertices, error));
     HEWN_TRY(grow(&soup->face_origins, &soup->face_capacity, faces, error));
     HEWN_TRY(grow(&soup->corners, &soup->corner_capacity, corners, error));
@@ -145,6 +152,7 @@ void hewn_soup_add_triangle(hewn_soup *soup, uint32_t a, uint32_t b, uint32_t c)
         soup->corners[at + k] = corners[k];
         soup->corner_origins[at + k] = HEWN_NONE;
     }
+    soup->turned[soup->face_count] = 0;
     soup->face_origins[soup->face_count++] = HEWN_NONE;
     soup->first[soup->face_count] = at + 3;
 }
@@ -160,6 +168,7 @@ void hewn_soup_keep_faces(hewn_soup *soup, const uint8_t *keep)
         memmove(soup->corners + corners, soup->corners + begin, length * sizeof *soup->corners);
         memmove(soup->corner_origins + corners, soup->corner_origins + begin, length * sizeof *soup->corner_origins);
         soup->face_origins[faces] = soup->face_origins[f];
+        soup->turned[faces] = soup->turned[f];
         soup->first[faces++] = corners;
         corners += length;
     }
@@ -178,6 +187,7 @@ static void reverse(uint32_t *items, uint64_t begin, uint64_t end)
 
 void hewn_soup_turn_face(hewn_soup *soup, uint32_t face)
 {
+    soup->turned[face] ^= 1;
     reverse(soup->corners, soup->first[face] + 1, soup->first[face + 1]);
     reverse(soup->corner_origins, soup->first[face] + 1, soup->first[face + 1]);
 }

@@ -14,9 +14,11 @@ typedef struct hewn_soup {
     uint32_t *vertex_origins;
     uint64_t *first; /* face_count + 1 */
     uint32_t *face_origins;
+    uint8_t *turned; /* whether a face runs against its origin */
     uint32_t *corners;
     uint32_t *corner_origins;
-    size_t position_capacity, vertex_capacity, first_capacity, face_capacity, corner_capacity, corner_origin_capacity;
+    size_t position_capacity, vertex_capacity, first_capacity, face_capacity, turned_capacity, corner_capacity,
+        corner_origin_capacity;
 } hewn_soup;
 
 /* --- soup.c ------------------------------------------------------------------------------------------------------ */
@@ -46,7 +48,7 @@ void hewn_soup_add_triangle(hewn_soup *soup, uint32_t a, uint32_t b, uint32_t c)
 /* Keeps the faces whose mark is not 0, in order. */
 void hewn_soup_keep_faces(hewn_soup *soup, const uint8_t *keep);
 
-/* Reverses a face; its first corner stays first. */
+/* Reverses a face, and its mark; its first corner stays first. */
 void hewn_soup_turn_face(hewn_soup *soup, uint32_t face);
 
 /* Drops vertices without faces, the others keep their order. */
@@ -62,6 +64,9 @@ uint32_t *hewn_soup_corner_faces(const hewn_soup *soup);
 uint32_t hewn_sets_find(uint32_t *parent, uint32_t item);
 bool hewn_sets_join(uint32_t *parent, uint32_t a, uint32_t b); /* false where they were one already */
 uint32_t *hewn_sets_create(uint32_t count);                    /* each alone; NULL when out of memory */
+
+/* Joins the vertices of each face. */
+void hewn_soup_join_faces(const hewn_soup *soup, uint32_t *parent);
 
 /* --- weld.c, near.c ---------------------------------------------------------------------------------------------- */
 
@@ -105,14 +110,12 @@ static inline uint32_t hewn_side_head(const hewn_soup *soup, const hewn_sides *s
 
 /* --- orient.c ---------------------------------------------------------------------------------------------------- */
 
-/* Turns faces so that as many as can be agree across edges of two faces. Corners move; build sides afterwards. `turned`
- * (a byte for each face) becomes 1 for the faces turned. */
-hewn_result hewn_soup_orient(hewn_soup *soup, bool strict, uint8_t *turned, hewn_error *error);
+/* Turns faces so that as many as can be agree across edges of two faces. */
+hewn_result hewn_soup_orient(hewn_soup *soup, bool strict, hewn_error *error);
 
-/* Turns closed components (no HEWN_NONE among `mates`, as the stitching leaves them) outward; `turned` is toggled and
- * `mates` no longer true. */
-hewn_result hewn_soup_turn_outward(hewn_soup *soup, const uint32_t *mates, hewn_outward outward, uint8_t *turned,
-                                   hewn_repair_report *report, hewn_error *error);
+/* Turns closed components outward. Needs a manifold soup. */
+hewn_result hewn_soup_turn_outward(hewn_soup *soup, hewn_outward outward, hewn_repair_report *report,
+                                   hewn_error *error);
 
 /* --- pair.c, stitch.c -------------------------------------------------------------------------------------------- */
 
@@ -127,9 +130,8 @@ void hewn_soup_pair(const hewn_soup *soup, const hewn_sides *sides, uint32_t gro
                     uint32_t *stack, uint32_t *mates);
 
 /* Decides which half-edges are mates, and gives each vertex a copy for each further fan, so that afterwards no edge has
- * more than two faces and no vertex more than one fan. `*mates` (owned by the caller) has an entry for each corner. */
-hewn_result hewn_soup_stitch(hewn_soup *soup, bool strict, uint32_t **mates, hewn_repair_report *report,
-                             hewn_error *error);
+ * more than two faces and no vertex more than one fan. */
+hewn_result hewn_soup_stitch(hewn_soup *soup, bool strict, hewn_repair_report *report, hewn_error *error);
 
 /* --- islands.c, fill.c ------------------------------------------------------------------------------------------- */
 

@@ -108,12 +108,10 @@ static void walk_fan(stitcher *s, uint32_t corner, uint32_t fan)
         uint32_t mate = s->mates[at];
         at = mate == HEWN_NONE ? HEWN_NONE : side_after(s, mate);
     } while (at != HEWN_NONE && at != corner);
-    for (at = corner; at != HEWN_NONE && s->fans[at] == fan;) {
-        uint32_t mate = s->mates[side_before(s, at)];
-        if (mate == HEWN_NONE || s->fans[mate] == fan)
-            return;
-        at = mate;
+    at = s->mates[side_before(s, corner)];
+    while (at != HEWN_NONE && s->fans[at] != fan) {
         s->fans[at] = fan;
+        at = s->mates[side_before(s, at)];
     }
 }
 
@@ -137,7 +135,8 @@ static hewn_result find_fans(stitcher *s, uint8_t *used, hewn_error *error)
     return HEWN_OK;
 }
 
-/* --- edges that would still have too many faces -------------------------------------------------------------------- */
+/* --- edges that would still have too many faces --------------------------------------------------------------------
+ */
 
 static int compare_subs(const void *a, const void *b)
 {
@@ -302,10 +301,8 @@ static hewn_result stitch(stitcher *s, bool strict, uint8_t *bytes, hewn_repair_
     return copy_vertices(s, bytes, report, error);
 }
 
-hewn_result hewn_soup_stitch(hewn_soup *soup, bool strict, uint32_t **mates, hewn_repair_report *report,
-                             hewn_error *error)
+hewn_result hewn_soup_stitch(hewn_soup *soup, bool strict, hewn_repair_report *report, hewn_error *error)
 {
-    *mates = NULL;
     stitcher s = {.soup = soup};
     HEWN_TRY(hewn_sides_build(soup, &s.sides, error));
     uint8_t *bytes = hewn_alloc(soup->vertex_count, 1);
@@ -314,10 +311,7 @@ hewn_result hewn_soup_stitch(hewn_soup *soup, bool strict, uint32_t **mates, hew
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory stitching %u faces", soup->face_count);
     if (result == HEWN_OK)
         result = stitch(&s, strict, bytes, report, error);
-    if (result == HEWN_OK)
-        *mates = s.mates;
-    else
-        hewn_free(s.mates);
+    hewn_free(s.mates);
     hewn_free(bytes);
     hewn_free(s.fans);
     hewn_free(s.special);

@@ -20,6 +20,7 @@ static hewn_result read_gltf(const char *bytes, size_t length, const char *name,
 static hewn_result read_exact(reader read, const void *bytes, size_t length, hewn_triangles *out, hewn_error *error)
 {
     char *copy = hewn_alloc(length, 1);
+    assert_non_null(copy);
     memcpy(copy, bytes, length);
     hewn_result result = read(copy, length, "given", out, error);
     hewn_free(copy);
@@ -456,6 +457,7 @@ static void test_gltf_instances_have_a_limit(void **state)
     (void)state;
     size_t room = 1 << 20, used;
     char *text = hewn_alloc(room, 1);
+    assert_non_null(text);
     used = (size_t)snprintf(text, room, "{" ASSET "," DATA VIEWS "\"meshes\":[{\"primitives\":[");
     for (int i = 0; i < 4000; i++)
         used += (size_t)snprintf(text + used, room - used, "%s{\"attributes\":{\"POSITION\":0}}", i ? "," : "");
@@ -475,6 +477,7 @@ static void test_deep_json(void **state)
     (void)state;
     size_t depth = 200000;
     char *text = hewn_alloc(2 * depth + 64, 1);
+    assert_non_null(text);
     size_t used = (size_t)sprintf(text, "{" ASSET ",\"extras\":");
     memset(text + used, '[', depth);
     memset(text + used + depth, ']', depth);

@@ -5,7 +5,7 @@
 
 /* --- the oracle --------------------------------------------------------------------------------------------------- */
 
-enum { MOST = 32 };
+enum { MOST = 12 };
 
 /* A convex polygon in space as its corners in order, which may coincide; empty where count is 0. */
 typedef struct polygon {
@@ -295,19 +295,19 @@ static void check_grid(int rounds, uint32_t size, int axes, uint64_t seed)
 static void test_small_grid(void **state)
 {
     (void)state;
-    check_grid(effort(4000, 25), 3, 3, 1);
+    check_grid(effort(3000, 35), 3, 3, 1);
 }
 
 static void test_larger_grid(void **state)
 {
     (void)state;
-    check_grid(effort(4000, 25), 4, 3, 2);
+    check_grid(effort(3000, 35), 4, 3, 2);
 }
 
 static void test_plane_grid(void **state)
 {
     (void)state;
-    check_grid(effort(4000, 25), 4, 2, 3);
+    check_grid(effort(3000, 35), 4, 2, 3);
 }
 
 static void test_line_grid(void **state)
