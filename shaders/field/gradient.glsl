@@ -316,7 +316,9 @@ vec4 f_cone(vec4 a, vec4 b, vec4 c, float bottom, float top, float half_height, 
     vec4 cap = vec4(up, f.cap), side = vec4(u * around + v * b.xyz, f.side);
     vec4 turn = vec4(u * b.xyz - v * around, f.turn);
     float to_cap = f_length(f.over, f.cap), to_side = f_length(f.side, f.along);
-    bool nearer_side = to_side < to_cap, under = f.cap <= 0.0, behind = f.side <= 0.0, nearer_slant = f.side > f.cap;
+    bool under = f.cap <= 0.0, behind = f.side <= 0.0, nearer_slant = f.side > f.cap;
+    /* straight out from the slant it is nearest, whatever rounding makes of two distances that are almost equal */
+    bool less = to_side < to_cap, straight = f.along == 0.0 && !behind, nearer_side = less || straight;
     vec3 outside =
         mix(f_pull(vec4(around, f.over), cap), f_pull(side, vec4(f_away(turn), f.along)), bvec3(nearer_side));
     vec3 inside = mix(up, side.xyz, bvec3(nearer_slant));

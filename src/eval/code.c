@@ -9,24 +9,25 @@
 
 /* --- parameters -------------------------------------------------------------------------------------------------- */
 
-static bool in_uniforms(const hewn_code *code)
+static bool by_address(const hewn_code *code)
 {
-    return code->parameters.size == 0;
+    return code->parameters.size > 0;
 }
 
 static hewn_result write_parameters(hewn_device *device, hewn_code *code, hewn_error *error)
 {
     const hewn_listing *listing = &code->listing;
-    uint64_t bytes = (listing->parameter_count * sizeof(float) + 15) / 16 * 16;
+    size_t count = listing->fixed ? 0 : listing->parameter_count;
+    uint64_t bytes = (count * sizeof(float) + 15) / 16 * 16;
     bytes = bytes < 16 ? 16 : bytes;
     if (bytes <= device->max_uniform_range) {
         HEWN_TRY(hewn_buffer_create(device, "parameters", bytes, HEWN_BUFFER_UPLOAD, &code->uniforms, error));
         memset(code->uniforms.mapped, 0, bytes);
-        memcpy(code->uniforms.mapped, listing->parameters, listing->parameter_count * sizeof(float));
+        memcpy(code->uniforms.mapped, listing->parameters, count * sizeof(float));
         return HEWN_OK;
     }
     HEWN_TRY(hewn_buffer_create(device, "parameters", bytes, HEWN_BUFFER_UPLOAD, &code->parameters, error));
-    memcpy(code->parameters.mapped, listing->parameters, listing->parameter_count * sizeof(float));
+    memcpy(code->parameters.mapped, listing->parameters, count * sizeof(float));
     HEWN_TRY(hewn_buffer_create(device, "parameters", 16, HEWN_BUFFER_UPLOAD, &code->uniforms, error));
     memset(code->uniforms.mapped, 0, 16);
     memcpy(code->uniforms.mapped, &code->parameters.address, sizeof code->parameters.address);
@@ -37,7 +38,9 @@ static hewn_result write_parameters(hewn_device *device, hewn_code *code, hewn_e
  * buffer's address are gathered lane by lane there. */
 static void write_parameter_block(const hewn_code *code, hewn_text *text)
 {
-    if (in_uniforms(code)) {
+    if (code->listing.fixed)
+        return;
+    if (!by_address(code)) {
         hewn_text_print(text,
                         "layout(set = 0, binding = 0) uniform hewn_parameter_block { vec4 hewn_parameters[%u]; };\n",
                         (unsigned)(code->uniforms.size / 16));
@@ -63,8 +66,8 @@ static hewn_result choose_blocks(hewn_code *code, hewn_error *error)
     return HEWN_OK;
 }
 
-hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
-                             hewn_error *error)
+static hewn_result create(hewn_device *device, const hewn_field *field, hewn_node root, bool fixed, hewn_code **out,
+                          hewn_error *error)
 {
     *out = NULL;
     hewn_code *code = hewn_alloc_zero(1, sizeof *code);
@@ -75,6 +78,7 @@ hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a field's code");
     }
     hewn_result result = hewn_listing_create(&code->listing, field, root, error);
+    code->listing.fixed = fixed;
     if (result == HEWN_OK)
         result = choose_blocks(code, error);
     if (result == HEWN_OK)
@@ -83,6 +87,18 @@ hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_
         hewn_code_destroy(device, &code);
     *out = code;
     return result;
+}
+
+hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
+                             hewn_error *error)
+{
+    return create(device, field, root, false, out, error);
+}
+
+hewn_result hewn_code_create_fixed(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
+                                   hewn_error *error)
+{
+    return create(device, field, root, true, out, error);
 }
 
 void hewn_code_destroy(hewn_device *device, hewn_code **code)
@@ -110,7 +126,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
     size_t version = strcspn(desc->head, "\n");
     version += desc->head[version] == '\n';
     hewn_text_append_bytes(text, desc->head, version);
-    if (!in_uniforms(code))
+    if (by_address(code))
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n");
     hewn_text_append(text, desc->head + version);
     hewn_text_append(text, "\n");

@@ -23,6 +23,13 @@ typedef enum hewn_flavour {
 /* Reads what it needs of the field, which may change or go afterwards. */
 hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
                              hewn_error *error);
+
+/* The same with all numbers in the code instead of a buffer: for one job, not for edits, since any other number
+ * compiles anew. On CPU drivers the first compilation takes a quarter of the time, for there every read of a buffer is
+ * a branch to compile. Values have the same bits. */
+hewn_result hewn_code_create_fixed(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
+                                   hewn_error *error);
+
 void hewn_code_destroy(hewn_device *device, hewn_code **code);
 
 /* A kernel that calls the field. Its text is `head` (starts with #version and extensions; `common` below is appended by

@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/alloc.h"
@@ -155,6 +156,23 @@ typedef enum listing_flavour { POINT, INTERVAL, GRADIENT } listing_flavour;
 
 static const char *const types[] = {"float", "vec2", "vec4"};
 
+static void write_number(const hewn_listing *listing, uint32_t i, hewn_text *text)
+{
+    float value = listing->parameters[i];
+    if (!listing->fixed) {
+        hewn_text_print(text, "P(%u)", i);
+    } else if (!isfinite(value)) {
+        hewn_text_append(text, isnan(value) ? "F_NAN" : value > 0 ? "F_INF" : "(-F_INF)");
+    } else {
+        /* nine digits tell any two floats apart; a point or an exponent makes the literal a float */
+        char digits[32];
+        snprintf(digits, sizeof digits, "%.9g", (double)value);
+        hewn_text_append(text, digits);
+        if (!strpbrk(digits, ".e"))
+            hewn_text_append(text, ".0");
+    }
+}
+
 static void write_operand(const hewn_listing *listing, uint32_t at, listing_flavour flavour, bool plain,
                           hewn_text *text)
 {
@@ -162,11 +180,11 @@ static void write_operand(const hewn_listing *listing, uint32_t at, listing_flav
     if (step->op <= HEWN_OP_Z) {
         hewn_text_append_bytes(text, &"xyz"[step->op - HEWN_OP_X], 1);
     } else if (step->op == HEWN_OP_CONSTANT) {
-        switch (plain ? POINT : flavour) {
-        case POINT: hewn_text_print(text, "P(%u)", step->parameter); break;
-        case INTERVAL: hewn_text_print(text, "f_number(P(%u))", step->parameter); break;
-        default: hewn_text_print(text, "vec4(vec3(0.0),P(%u))", step->parameter);
-        }
+        static const char *const openings[] = {"", "f_number(", "vec4(vec3(0.0),"};
+        listing_flavour form = plain ? POINT : flavour;
+        hewn_text_append(text, openings[form]);
+        write_number(listing, step->parameter, text);
+        hewn_text_append(text, form == POINT ? "" : ")");
     } else {
         hewn_text_print(text, "n%u", at);
     }
@@ -205,8 +223,10 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     bool guard = flavour == INTERVAL && needs_guard(listing, step);
     hewn_text_print(text, "%s n%u=%sf_%s(", types[flavour], at, guard ? "f_guard(" : "", step->function);
     write_operands(listing, step, flavour, false, text);
-    for (uint32_t i = 0; i < step->parameter_count; i++)
-        hewn_text_print(text, ",P(%u)", step->parameter + i);
+    for (uint32_t i = 0; i < step->parameter_count; i++) {
+        hewn_text_append(text, ",");
+        write_number(listing, step->parameter + i, text);
+    }
     if (guard) {
         hewn_text_append(text, "),");
         write_operands(listing, step, flavour, true, text);

@@ -30,7 +30,8 @@ typedef struct hewn_listing {
     hewn_code_step *steps; /* operands first, the root last */
     size_t count;
     float *parameters; /* rounded once; what is below the smallest normal number is 0 */
-    size_t parameter_count, parameter_capacity;
+    size_t parameter_count;
+    bool fixed; /* numbers are written into the code */
 } hewn_listing;
 
 /* Fills in size, positive and sure from the operands' (reach.c). */
@@ -39,7 +40,8 @@ void hewn_code_step_reach(const hewn_listing *listing, hewn_code_step *step);
 hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, hewn_error *error);
 void hewn_listing_destroy(hewn_listing *listing);
 
-/* Appends the functions of `flavours`. P(i) must be parameter i, and the library must precede. */
+/* Appends the functions of `flavours`; the library must precede. Parameter i is P(i), or, where numbers are `fixed`, a
+ * literal. */
 void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text);
 
 #endif

@@ -182,7 +182,8 @@ hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *des
     *run.stats = (hewn_extract_stats){0};
     *out = (hewn_triangles){0};
     HEWN_TRY(hewn_grid_lay(desc, &run.grid, &run.stats->bounds, error));
-    run.stats->cell = (double)run.grid.cell;
+    run.stats->cell =
+        desc->cell != 0 ? desc->cell : (run.stats->bounds.hi[0] - run.stats->bounds.lo[0]) / run.grid.cells[0];
     for (int axis = 0; axis < 3; axis++)
         run.stats->cells[axis] = run.grid.cells[axis];
     hewn_result result = run_stages(&run, out, error);

@@ -7,6 +7,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "gpu/device.h"
 
 typedef struct state {
     hewn_device *device;
@@ -128,12 +129,12 @@ static void run_rows(hewn_device *device, const hewn_code *code, const float *ro
     hewn_buffer_destroy(device, &out);
 }
 
-/* Points, gradients' values and signs of rows, all at the same arguments. */
+/* Points, gradients' values and signs of rows, all at the same arguments; rows also with the numbers in the code. */
 static void check_bits(state *state, const hewn_field *field, hewn_node root, const char *name)
 {
     enum { ROWS = 1000, COUNT = 8 * ROWS };
     static float rows[ROW * ROWS], points[3 * COUNT], values[COUNT], gradients[4 * COUNT];
-    static uint32_t signs[ROWS];
+    static uint32_t signs[ROWS], fixed_signs[ROWS];
     for (int i = 0; i < ROW * ROWS; i++)
         rows[i] = gpu_test_random(&state->random) % 16
                       ? (float)code_between(&state->random, -3, 3)
@@ -148,6 +149,10 @@ static void check_bits(state *state, const hewn_field *field, hewn_node root, co
     GPU_TEST_TRY(hewn_code_eval_gradients(state->device, code, points, COUNT, gradients, &error));
     run_rows(state->device, code, rows, ROWS, signs);
     hewn_code_destroy(state->device, &code);
+    GPU_TEST_TRY(hewn_code_create_fixed(state->device, field, root, &code, &error));
+    run_rows(state->device, code, rows, ROWS, fixed_signs);
+    hewn_code_destroy(state->device, &code);
+    assert_memory_equal(signs, fixed_signs, sizeof signs);
     for (int i = 0; i < COUNT; i++) {
         if (!code_same(values[i], gradients[4 * i]))
             fail_msg("%s: value %.9g, with gradient %.9g", name, (double)values[i], (double)gradients[4 * i]);
@@ -260,7 +265,8 @@ static void check_values(state *state, const hewn_field *field, hewn_node root, 
         boxes[6 * (i / 3) + 3 + i % 3] = points[i] + 0.01f;
     }
     double begin = hewn_clock_now();
-    hewn_code *code = code_of(state->device, field, root);
+    hewn_code *code;
+    GPU_TEST_TRY(hewn_code_create_fixed(state->device, field, root, &code, &error));
     GPU_TEST_TRY(hewn_code_eval_points(state->device, code, points, COUNT, values, &error));
     double middle = hewn_clock_now();
     GPU_TEST_TRY(hewn_code_eval_boxes(state->device, code, boxes, COUNT, intervals, &error));
@@ -299,38 +305,40 @@ static hewn_node many_shapes(hewn_field *field, uint64_t *random, int count)
     return all;
 }
 
-static void a_thousand_shapes_compile(void **test_state)
+static void many_shapes_compile(void **test_state)
 {
     state *state = *test_state;
     hewn_field *field;
     GPU_TEST_TRY(hewn_field_create(&field, &error));
-    hewn_node root = many_shapes(field, &state->random, 1000);
-    check_values(state, field, root, 1e-5, "1,000 shapes");
+    int count = gpu_test_long() ? 1000 : 100;
+    hewn_node root = many_shapes(field, &state->random, count);
+    check_values(state, field, root, 1e-5, count == 100 ? "100 shapes" : "1,000 shapes");
     hewn_field_destroy(&field);
 }
 
-/* More parameters than a block of uniforms holds: they are then read through their address. */
+/* More parameters than a block of uniforms holds are read through their address; a small limit stands in for them. */
 static void parameters_may_outgrow_uniforms(void **test_state)
 {
     state *state = *test_state;
     hewn_field *field;
     GPU_TEST_TRY(hewn_field_create(&field, &error));
-    hewn_node sum = hewn_constant(field, 0);
-    for (int i = 0; i < 20000; i++)
-        sum = hewn_max(field,
-                       hewn_add(field, i % 2 ? hewn_x(field) : hewn_y(field),
-                                hewn_constant(field, code_between(&state->random, -1, 1))),
-                       sum);
-    GPU_TEST_TRY(hewn_field_status(field, &error));
-    hewn_code *code = code_of(state->device, field, sum);
-    assert_true(hewn_code_uniforms(code)->size <= 16);
-    float point[3] = {0.25f, 0.5f, 0}, value;
-    GPU_TEST_TRY(hewn_code_eval_points(state->device, code, point, 1, &value, &error));
-    double expected, at[3] = {0.25, 0.5, 0};
-    GPU_TEST_TRY(hewn_field_eval(field, sum, at, 1, &expected, &error));
-    assert_true(fabs((double)value - expected) < 1e-6);
-    hewn_code_destroy(state->device, &code);
+    hewn_node root = many_shapes(field, &state->random, 8);
+    const float point[3] = {0.25f, 0.5f, 0.125f};
+    const uint64_t range = state->device->max_uniform_range;
+    float values[3];
+    hewn_code *codes[3] = {code_of(state->device, field, root)};
+    GPU_TEST_TRY(hewn_code_create_fixed(state->device, field, root, &codes[2], &error));
+    state->device->max_uniform_range = 64;
+    codes[1] = code_of(state->device, field, root);
+    assert_true(hewn_code_uniforms(codes[0])->size > 64 && hewn_code_uniforms(codes[1])->size == 16);
+    for (int i = 0; i < 3; i++) {
+        state->device->max_uniform_range = i == 1 ? 64 : range;
+        GPU_TEST_TRY(hewn_code_eval_points(state->device, codes[i], point, 1, &values[i], &error));
+        hewn_code_destroy(state->device, &codes[i]);
+    }
+    state->device->max_uniform_range = range;
     hewn_field_destroy(&field);
+    assert_true(code_same(values[0], values[1]) && code_same(values[0], values[2]));
 }
 
 static hewn_op vm_op(const char *name)
@@ -462,7 +470,7 @@ int main(void)
         cmocka_unit_test(gradients_are_the_oracles),
         cmocka_unit_test(flavours_agree_bit_for_bit),
         cmocka_unit_test(a_changed_number_compiles_nothing),
-        cmocka_unit_test(a_thousand_shapes_compile),
+        cmocka_unit_test(many_shapes_compile),
         cmocka_unit_test(parameters_may_outgrow_uniforms),
         cmocka_unit_test(prospero_compiles),
         cmocka_unit_test(batches_have_any_size),
