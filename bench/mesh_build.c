@@ -53,8 +53,7 @@ static contender contenders[] = {
 };
 enum { CONTENDERS = sizeof contenders / sizeof *contenders };
 
-/* --- input ----------------------------------------------------------------------------------------------------------
- */
+/* --- input -------------------------------------------------------------------------------------------------------- */
 
 static uint64_t random_bits(uint64_t *at)
 {
@@ -117,8 +116,7 @@ static peer_input make_torus(uint64_t triangles, bool in_order)
     return (peer_input){verts, 2 * verts, positions, indices};
 }
 
-/* --- measuring ------------------------------------------------------------------------------------------------------
- */
+/* --- measuring ---------------------------------------------------------------------------------------------------- */
 
 static int by_value(const void *a, const void *b)
 {

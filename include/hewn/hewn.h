@@ -9,6 +9,9 @@
 #include "hewn/field.h"
 #include "hewn/io.h"
 #include "hewn/job.h"
+#include "hewn/mesh.h"
+#include "hewn/mesh_views.h"
+#include "hewn/repair.h"
 #include "hewn/scene.h"
 #include "hewn/triangles.h"
 

@@ -48,7 +48,7 @@ typedef struct hewn_face {
 #define HEWN_FACE_NONE ((hewn_face){HEWN_NONE})
 #endif
 
-/* --- life ------------------------------------------------------------------------------------------------------- */
+/* --- life --------------------------------------------------------------------------------------------------------- */
 
 /* An empty mesh. HEWN_OUT_OF_MEMORY. */
 HEWN_API hewn_result hewn_mesh_create(hewn_mesh **out, hewn_error *error);
@@ -83,7 +83,7 @@ HEWN_API hewn_result hewn_mesh_from_triangles(const hewn_triangles *triangles, h
  * for a position that a float cannot hold, HEWN_INVALID_ARGUMENT where a polygon cannot be cut, HEWN_OUT_OF_MEMORY. */
 HEWN_API hewn_result hewn_mesh_to_triangles(const hewn_mesh *mesh, hewn_triangles *out, hewn_error *error);
 
-/* --- sizes and walking ------------------------------------------------------------------------------------------- */
+/* --- sizes and walking -------------------------------------------------------------------------------------------- */
 
 /* Live elements, and the bound that all ids are below (larger where there are holes). */
 HEWN_API uint32_t hewn_mesh_vert_count(const hewn_mesh *mesh);
@@ -150,7 +150,7 @@ HEWN_API const double *hewn_vert_position(const hewn_mesh *mesh, hewn_vert vert)
 /* Moves a vertex; a position that is not finite is ignored. */
 HEWN_API void hewn_vert_set_position(hewn_mesh *mesh, hewn_vert vert, const double position[3]);
 
-/* --- attributes -------------------------------------------------------------------------------------------------- */
+/* --- attributes --------------------------------------------------------------------------------------------------- */
 
 typedef enum hewn_domain {
     HEWN_DOMAIN_VERT,

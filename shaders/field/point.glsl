@@ -2,70 +2,71 @@
  * computes the same bits. A block runs from one marker (slashes, colon, its name, the blocks it needs) to the next, and
  * only the blocks that a field uses are compiled. Errors are tabled in docs/evaluation.md. */
 //: core
+layout(constant_id = 2000) const bool f_always = true;
 #define F_INF uintBitsToFloat(0x7f800000u)
 #define F_NAN uintBitsToFloat(0x7fc00000u)
 
 /* On the bits, because a driver may take it for granted that no float is NaN. */
-bool f_is_nan(float a)
+bool f_is_nan(const float a)
 {
     return (floatBitsToInt(a) & 0x7fffffff) > 0x7f800000;
 }
 
-bool f_is_nan(float a, float b)
+bool f_is_nan(const float a, const float b)
 {
     return max(floatBitsToInt(a) & 0x7fffffff, floatBitsToInt(b) & 0x7fffffff) > 0x7f800000;
 }
 
 /* A selection, never a branch. */
-float f_pick(bool condition, float yes, float no)
+float f_pick(const bool condition, const float yes, const float no)
 {
     return mix(no, yes, condition);
 }
 
 /* max(a, 0) that lets NaN through: as integers, negative numbers (NaN apart) are those up to the bits of -inf. */
-float f_positive(float a)
+float f_positive(const float a)
 {
     return f_pick(floatBitsToInt(a) <= -0x800000, 0.0, a);
 }
 
-float f_copy_sign(float magnitude, float sign)
+float f_copy_sign(const float magnitude, const float sign)
 {
     return intBitsToFloat(floatBitsToInt(magnitude) | (floatBitsToInt(sign) & int(0x80000000u)));
 }
 
 //: length
-precise float f_length(float a, float b)
+precise float f_length(const float a, const float b)
 {
     precise float sum = a * a + b * b;
     return sqrt(sum);
 }
 
-precise float f_length(float a, float b, float c)
+precise float f_length(const float a, const float b, const float c)
 {
     precise float sum = a * a + b * b + c * c;
     return sqrt(sum);
 }
 
 //: neg
-float f_neg(float a)
+float f_neg(const float a)
 {
     return -a;
 }
 
 //: abs
-float f_abs(float a)
+float f_abs(const float a)
 {
     return abs(a);
 }
 
 //: sqrt
-float f_sqrt(float a)
+float f_sqrt(const float a)
 {
     return sqrt(a);
 }
 
 //: square
-precise float f_square(float a)
+precise float f_square(const float a)
 {
     precise float r = a * a;
     return r;
@@ -75,7 +76,7 @@ precise float f_square(float a)
 /* x less the nearest multiple `quarter` of pi/2, for Cody and Waite's reduction with pi/2 in five pieces. The first four
  * have 11 bits each, so that their products are exact while quarter has 13 bits. Past that the rest loses its meaning
  * and is only kept small. */
-precise float f_reduce(float x, out float quarter)
+precise float f_reduce(const float x, out float quarter)
 {
     precise float k = floor(x * 0.636619747 + 0.5);
     precise float r = x - k * 1.5703125;
@@ -88,7 +89,7 @@ precise float f_reduce(float x, out float quarter)
     return f_pick(r > 0.7875, 0.7875, f_pick(r < -0.7875, -0.7875, r));
 }
 
-precise float f_sine_near_0(float r)
+precise float f_sine_near_0(const float r)
 {
     precise float z = r * r;
     precise float s = ((-0.00019517896 * z + 0.00833218731) * z - 0.166666552) * z;
@@ -96,7 +97,7 @@ precise float f_sine_near_0(float r)
     return result;
 }
 
-precise float f_cosine_near_0(float r)
+precise float f_cosine_near_0(const float r)
 {
     precise float z = r * r;
     precise float s = ((2.44323273e-05 * z - 0.00138873095) * z + 0.0416666456) * z;
@@ -104,13 +105,13 @@ precise float f_cosine_near_0(float r)
     return result;
 }
 
-bool f_is_endless(float a)
+bool f_is_endless(const float a)
 {
     return (floatBitsToInt(a) & 0x7fffffff) >= 0x7f800000;
 }
 
 //: sin wave
-precise float f_sin(float a)
+precise float f_sin(const float a)
 {
     float quarter;
     precise float r = f_reduce(a, quarter);
@@ -120,7 +121,7 @@ precise float f_sin(float a)
 }
 
 //: cos wave
-precise float f_cos(float a)
+precise float f_cos(const float a)
 {
     float quarter;
     precise float r = f_reduce(a, quarter);
@@ -130,7 +131,7 @@ precise float f_cos(float a)
 }
 
 //: tan wave
-precise float f_tan(float a)
+precise float f_tan(const float a)
 {
     float quarter;
     precise float r = f_reduce(a, quarter);
@@ -142,7 +143,7 @@ precise float f_tan(float a)
 
 //: arcsine
 /* A square root to an ulp whatever the driver's is worth: one step of Newton's from a remainder without rounding. */
-precise float f_root(float z)
+precise float f_root(const float z)
 {
     precise float s = sqrt(z);
     precise float hi = intBitsToFloat(floatBitsToInt(s) & int(0xfffff000u));
@@ -153,7 +154,7 @@ precise float f_root(float z)
 }
 
 /* asin of s in [-1/2, 1/2] from s and s^2 */
-precise float f_arcsine_near_0(float s, float z)
+precise float f_arcsine_near_0(const float s, const float z)
 {
     precise float p =
         (((0.0421664417 * z + 0.0241807681) * z + 0.0454697721) * z + 0.0749530643) * z + 0.166667521;
@@ -162,7 +163,7 @@ precise float f_arcsine_near_0(float s, float z)
 }
 
 //: asin arcsine
-precise float f_asin(float a)
+precise float f_asin(const float a)
 {
     float m = abs(a);
     bool far = m > 0.5;
@@ -175,7 +176,7 @@ precise float f_asin(float a)
 }
 
 //: acos arcsine
-precise float f_acos(float a)
+precise float f_acos(const float a)
 {
     float m = abs(a);
     bool far = m > 0.5;
@@ -190,7 +191,7 @@ precise float f_acos(float a)
 
 //: arctangent
 /* atan of t in [0, 1] */
-precise float f_arctangent_to_1(float t)
+precise float f_arctangent_to_1(const float t)
 {
     precise float z = t * t;
     precise float p = (((-0.00178249995 * z + 0.0108676627) * z - 0.0310957283) * z + 0.0578806475) * z - 0.0839928538;
@@ -200,7 +201,7 @@ precise float f_arctangent_to_1(float t)
 }
 
 //: atan arctangent
-precise float f_atan(float a)
+precise float f_atan(const float a)
 {
     float m = abs(a);
     bool far = m > 1.0;
@@ -211,7 +212,7 @@ precise float f_atan(float a)
 }
 
 //: atan2 arctangent
-precise float f_atan2(float y, float x)
+precise float f_atan2(const float y, const float x)
 {
     float m = abs(y), n = abs(x);
     bool steep = m > n;
@@ -230,7 +231,7 @@ precise float f_atan2(float y, float x)
 }
 
 //: exp
-precise float f_exp(float a)
+precise float f_exp(const float a)
 {
     float x = f_pick(a < -104.0, -104.0, f_pick(a > 89.0, 89.0, a));
     x = f_pick(f_is_nan(a), 0.0, x);
@@ -246,7 +247,7 @@ precise float f_exp(float a)
 
 //: ln
 /* Denormal arguments count as zero, whatever the device does with them elsewhere. */
-precise float f_ln(float a)
+precise float f_ln(const float a)
 {
     int bits = floatBitsToInt(a), magnitude = bits & 0x7fffffff;
     int exponent = (bits - 0x3f3504f3) >> 23; /* the fraction lies between sqrt(1/2) and sqrt(2) */
@@ -263,19 +264,19 @@ precise float f_ln(float a)
 }
 
 //: floor
-float f_floor(float a)
+float f_floor(const float a)
 {
     return floor(a);
 }
 
 //: ceil
-float f_ceil(float a)
+float f_ceil(const float a)
 {
     return ceil(a);
 }
 
 //: round
-precise float f_round(float a)
+precise float f_round(const float a)
 {
     float m = abs(a);
     precise float whole = floor(m);
@@ -285,48 +286,48 @@ precise float f_round(float a)
 }
 
 //: not
-float f_not(float a)
+float f_not(const float a)
 {
     return f_pick(a == 0.0, 1.0, 0.0);
 }
 
 //: add
-precise float f_add(float a, float b)
+precise float f_add(const float a, const float b)
 {
     precise float r = a + b;
     return r;
 }
 
 //: sub
-precise float f_sub(float a, float b)
+precise float f_sub(const float a, const float b)
 {
     precise float r = a - b;
     return r;
 }
 
 //: mul
-precise float f_mul(float a, float b)
+precise float f_mul(const float a, const float b)
 {
     precise float r = a * b;
     return r;
 }
 
 //: div
-precise float f_div(float a, float b)
+precise float f_div(const float a, const float b)
 {
     precise float r = a / b;
     return r;
 }
 
 //: min
-float f_min(float a, float b)
+float f_min(const float a, const float b)
 {
     bool unknown = f_is_nan(b), less = b < a;
     return f_pick(less || unknown, b, a);
 }
 
 //: max
-float f_max(float a, float b)
+float f_max(const float a, const float b)
 {
     bool unknown = f_is_nan(b), more = b > a;
     return f_pick(more || unknown, b, a);
@@ -335,7 +336,7 @@ float f_max(float a, float b)
 //: mod
 /* a - b floor(a/b) with an exact product (both factors split into halves), then put right where the quotient was just
  * off a whole number. Past |a/b| of 2^22 the result is only kept between 0 and |b|. */
-precise float f_mod(float a, float b)
+precise float f_mod(const float a, const float b)
 {
     float m = abs(b);
     precise float q = floor(a / m);
@@ -357,58 +358,58 @@ precise float f_mod(float a, float b)
 }
 
 //: compare
-float f_compare(float a, float b)
+float f_compare(const float a, const float b)
 {
     return f_pick(f_is_nan(a, b), F_NAN, f_pick(a < b, -1.0, f_pick(a > b, 1.0, 0.0)));
 }
 
 //: and
-float f_and(float a, float b)
+float f_and(const float a, const float b)
 {
     return f_pick(a == 0.0, a, b);
 }
 
 //: or
-float f_or(float a, float b)
+float f_or(const float a, const float b)
 {
     return f_pick(a == 0.0, b, a);
 }
 
 //: shift
-precise float f_shift(float a, float s)
+precise float f_shift(const float a, const float s)
 {
     precise float r = a + s;
     return r;
 }
 
 //: affine
-precise float f_affine(float a, float p, float s)
+precise float f_affine(const float a, const float p, const float s)
 {
     precise float sum = p * a + s;
     return sum;
 }
 
-precise float f_affine(float a, float b, float p, float q, float s)
+precise float f_affine(const float a, const float b, const float p, const float q, const float s)
 {
     precise float sum = p * a + q * b + s;
     return sum;
 }
 
-precise float f_affine(float a, float b, float c, float p, float q, float r, float s)
+precise float f_affine(const float a, const float b, const float c, const float p, const float q, const float r, const float s)
 {
     precise float sum = p * a + q * b + r * c + s;
     return sum;
 }
 
 //: sphere length
-precise float f_sphere(float a, float b, float c, float radius)
+precise float f_sphere(const float a, const float b, const float c, const float radius)
 {
     precise float r = f_length(a, b, c) - radius;
     return r;
 }
 
 //: box length
-precise float f_box(float a, float b, float c, float p, float q, float r)
+precise float f_box(const float a, const float b, const float c, const float p, const float q, const float r)
 {
     precise float x = abs(a) - p, y = abs(b) - q, z = abs(c) - r;
     float most = f_pick(y > x, y, x);
@@ -418,14 +419,14 @@ precise float f_box(float a, float b, float c, float p, float q, float r)
 }
 
 //: rounded_box box
-precise float f_rounded_box(float a, float b, float c, float p, float q, float r, float radius)
+precise float f_rounded_box(const float a, const float b, const float c, const float p, const float q, const float r, const float radius)
 {
     precise float d = f_box(a, b, c, p, q, r) - radius;
     return d;
 }
 
 //: torus length
-precise float f_torus(float a, float b, float c, float major, float minor)
+precise float f_torus(const float a, const float b, const float c, const float major, const float minor)
 {
     precise float d = f_length(f_length(a, c) - major, b) - minor;
     return d;
@@ -433,7 +434,7 @@ precise float f_torus(float a, float b, float c, float major, float minor)
 
 //: profile length
 /* Inside a corner the larger of two distances, outside it the length of what is positive of both. */
-precise float f_corner(float x, float y)
+precise float f_corner(const float x, const float y)
 {
     float most = f_pick(y > x, y, x);
     precise float d = f_length(f_positive(x), f_positive(y)) + f_pick(most > 0.0, 0.0, most);
@@ -441,14 +442,14 @@ precise float f_corner(float x, float y)
 }
 
 //: cylinder profile
-precise float f_cylinder(float a, float b, float c, float radius, float half_height)
+precise float f_cylinder(const float a, const float b, const float c, const float radius, const float half_height)
 {
     precise float x = f_length(a, c) - radius, y = abs(b) - half_height;
     return f_corner(x, y);
 }
 
 //: capsule length
-precise float f_capsule(float a, float b, float c, float radius, float half_height)
+precise float f_capsule(const float a, const float b, const float c, const float radius, const float half_height)
 {
     precise float y = abs(b) - half_height;
     precise float d = f_length(a, f_positive(y), c) - radius;
@@ -463,8 +464,8 @@ struct f_frustum {
     float cap, side, over, along, turn;
 };
 
-precise f_frustum f_around_frustum(float r, float y, float bottom, float top, float half_height, float u, float v,
-                                   float slant, float mean)
+precise f_frustum f_around_frustum(const float r, const float y, const float bottom, const float top, const float half_height, const float u, const float v,
+                                   const float slant, const float mean)
 {
     precise f_frustum f;
     precise float off = r - mean;
@@ -476,7 +477,7 @@ precise f_frustum f_around_frustum(float r, float y, float bottom, float top, fl
     return f;
 }
 
-precise float f_frustum_distance(f_frustum f)
+precise float f_frustum_distance(const f_frustum f)
 {
     precise float to_cap = f_length(f.over, f.cap), to_side = f_length(f.side, f.along);
     float outside = f_pick(to_side < to_cap, to_side, to_cap);
@@ -486,15 +487,15 @@ precise float f_frustum_distance(f_frustum f)
     return f_pick(f_is_nan(f.cap, f.side), F_NAN, d);
 }
 
-precise float f_cone(float a, float b, float c, float bottom, float top, float half_height, float u, float v,
-                     float slant, float mean)
+precise float f_cone(const float a, const float b, const float c, const float bottom, const float top, const float half_height, const float u, const float v,
+                     const float slant, const float mean)
 {
     return f_frustum_distance(f_around_frustum(f_length(a, c), b, bottom, top, half_height, u, v, slant, mean));
 }
 
 //: blend min
 /* k - |a - b|, or 0 where the two are too far apart to melt together; equal infinities are not apart. */
-precise float f_overlap(float a, float b, float k)
+precise float f_overlap(const float a, const float b, const float k)
 {
     precise float apart = abs(a - b);
     apart = f_pick(a == b, 0.0, apart);
@@ -503,7 +504,7 @@ precise float f_overlap(float a, float b, float k)
 }
 
 //: blend_quadratic blend
-precise float f_blend_quadratic(float a, float b, float k, float inverse)
+precise float f_blend_quadratic(const float a, const float b, const float k, const float inverse)
 {
     precise float h = f_overlap(a, b, k);
     precise float r = f_min(a, b) - 0.25 * (h * (h * inverse));
@@ -511,7 +512,7 @@ precise float f_blend_quadratic(float a, float b, float k, float inverse)
 }
 
 //: blend_cubic blend
-precise float f_blend_cubic(float a, float b, float k, float inverse)
+precise float f_blend_cubic(const float a, const float b, const float k, const float inverse)
 {
     precise float h = f_overlap(a, b, k), t = h * inverse;
     precise float r = f_min(a, b) - h * (t * t) * 0.166666672;
@@ -519,7 +520,7 @@ precise float f_blend_cubic(float a, float b, float k, float inverse)
 }
 
 //: blend_circular blend
-precise float f_blend_circular(float a, float b, float k, float inverse)
+precise float f_blend_circular(const float a, const float b, const float k, const float inverse)
 {
     precise float t = f_overlap(a, b, k) * inverse;
     precise float depth = (1.0 + t) - sqrt(1.0 + t * (2.0 - t));
@@ -529,7 +530,7 @@ precise float f_blend_circular(float a, float b, float k, float inverse)
 }
 
 //: blend_exponential blend exp ln
-precise float f_blend_exponential(float a, float b, float k, float inverse)
+precise float f_blend_exponential(const float a, const float b, const float k, const float inverse)
 {
     precise float apart = abs(a - b);
     apart = f_pick(a == b, 0.0, apart);

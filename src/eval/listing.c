@@ -221,7 +221,7 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     if (!step->function)
         return;
     bool guard = flavour == INTERVAL && needs_guard(listing, step);
-    hewn_text_print(text, "%s n%u=%sf_%s(", types[flavour], at, guard ? "f_guard(" : "", step->function);
+    hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", step->function);
     write_operands(listing, step, flavour, false, text);
     for (uint32_t i = 0; i < step->parameter_count; i++) {
         hewn_text_append(text, ",");
@@ -234,11 +234,38 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     hewn_text_append(text, ");\n");
 }
 
+/* The steps (only those with x, only those without, or all) in groups: Mesa inlines a call by
+ * moving all that follows it in its block, so thousands of calls in one block take minutes. The condition that keeps
+ * the groups apart until then is a specialization constant, true, which no front end folds and every driver does. */
+static void write_steps(const hewn_listing *listing, listing_flavour flavour, bool only, bool with_x, hewn_text *text)
+{
+    enum { GROUP = 32 };
+    uint32_t written = 0;
+    for (size_t i = 0; i < listing->count; i++) {
+        const hewn_code_step *step = &listing->steps[i];
+        if (!step->function || (only && with_x != ((step->axes & HEWN_AXIS_X) != 0)))
+            continue;
+        hewn_text_print(text, "%s n%zu", written++ % GROUP == 0 ? types[flavour] : ",", i);
+        if (written % GROUP == 0)
+            hewn_text_append(text, ";\n");
+    }
+    hewn_text_append(text, written % GROUP == 0 ? "" : ";\n");
+    written = 0;
+    for (size_t i = 0; i < listing->count; i++) {
+        const hewn_code_step *step = &listing->steps[i];
+        if (!step->function || (only && with_x != ((step->axes & HEWN_AXIS_X) != 0)))
+            continue;
+        if (written++ % GROUP == 0)
+            hewn_text_append(text, written > 1 ? "}\nif(f_always){\n" : "if(f_always){\n");
+        write_step(listing, (uint32_t)i, flavour, text);
+    }
+    hewn_text_append(text, written > 0 ? "}\n" : "");
+}
+
 static void write_function(const hewn_listing *listing, listing_flavour flavour, const char *opening, hewn_text *text)
 {
     hewn_text_append(text, opening);
-    for (size_t i = 0; i < listing->count; i++)
-        write_step(listing, (uint32_t)i, flavour, text);
+    write_steps(listing, flavour, false, false, text);
     hewn_text_append(text, flavour == INTERVAL ? "return f_result(" : "return ");
     write_operand(listing, (uint32_t)(listing->count - 1), flavour, false, text);
     hewn_text_append(text, flavour == INTERVAL ? ",x,y,z);\n}\n" : ";\n}\n");
@@ -248,13 +275,9 @@ static void write_function(const hewn_listing *listing, listing_flavour flavour,
 static void write_row(const hewn_listing *listing, hewn_text *text)
 {
     hewn_text_append(text, "uint field_row_inside(uint i, float y, float z)\n{\n");
-    for (size_t i = 0; i < listing->count; i++)
-        if (!(listing->steps[i].axes & HEWN_AXIS_X))
-            write_step(listing, (uint32_t)i, POINT, text);
+    write_steps(listing, POINT, true, false, text);
     hewn_text_append(text, "uint bits = 0u;\nfor (uint k = 0u; k < 8u; k++) {\nfloat x = sample_x(i + k);\n");
-    for (size_t i = 0; i < listing->count; i++)
-        if (listing->steps[i].axes & HEWN_AXIS_X)
-            write_step(listing, (uint32_t)i, POINT, text);
+    write_steps(listing, POINT, true, true, text);
     hewn_text_append(text, "bits |= uint(");
     write_operand(listing, (uint32_t)(listing->count - 1), POINT, false, text);
     hewn_text_append(text, " < 0.0) << k;\n}\nreturn bits;\n}\n");

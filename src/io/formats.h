@@ -21,7 +21,7 @@ hewn_result hewn_gltf_read(const char *bytes, size_t length, const char *name, c
  */
 
 /* What is to be written, checked: indices in range, numbers finite. */
-typedef struct hewn_mesh_job {
+typedef struct hewn_mesh_writing {
     const hewn_triangles *mesh;
     const char *name; /* of the object: one line, no control characters */
     double metres_per_unit;
@@ -29,14 +29,14 @@ typedef struct hewn_mesh_job {
     const hewn_progress *progress;
     char *head; /* what a writer's prepare made; freed by the caller of both */
     size_t head_length;
-} hewn_mesh_job;
+} hewn_mesh_writing;
 
 /* One format. `fits` fails with HEWN_LIMIT where the format cannot hold that many, and looks at counts only; it may be
  * NULL. `prepare`, still before a file exists, makes `head`, with which `write` begins. */
 typedef struct hewn_mesh_writer {
     hewn_result (*fits)(const hewn_triangles *mesh, hewn_error *error);
-    hewn_result (*prepare)(hewn_mesh_job *job, hewn_error *error);
-    hewn_result (*write)(const hewn_mesh_job *job, hewn_output *output, hewn_error *error);
+    hewn_result (*prepare)(hewn_mesh_writing *job, hewn_error *error);
+    hewn_result (*write)(const hewn_mesh_writing *job, hewn_output *output, hewn_error *error);
 } hewn_mesh_writer;
 
 extern const hewn_mesh_writer hewn_glb_writer, hewn_obj_writer, hewn_ply_writer, hewn_stl_writer;

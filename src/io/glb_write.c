@@ -24,7 +24,7 @@ static void turn(hewn_axis up, const float in[3], float out[3])
     out[2] = z;
 }
 
-static void convert_position(const hewn_mesh_job *job, uint64_t v, float out[3])
+static void convert_position(const hewn_mesh_writing *job, uint64_t v, float out[3])
 {
     float turned[3];
     turn(job->up, job->mesh->positions + 3 * v, turned);
@@ -33,7 +33,7 @@ static void convert_position(const hewn_mesh_job *job, uint64_t v, float out[3])
 }
 
 /* glTF wants length 1. What nearly has it keeps its bits, what has none points up. */
-static void convert_normal(const hewn_mesh_job *job, uint64_t v, float out[3])
+static void convert_normal(const hewn_mesh_writing *job, uint64_t v, float out[3])
 {
     turn(job->up, job->mesh->normals + 3 * v, out);
     double x = (double)out[0], y = (double)out[1], z = (double)out[2];
@@ -53,28 +53,28 @@ static char *put_vector(const float vector[3], char *to)
     return to;
 }
 
-static char *put_position(const hewn_mesh_job *job, uint64_t v, char *to)
+static char *put_position(const hewn_mesh_writing *job, uint64_t v, char *to)
 {
     float position[3];
     convert_position(job, v, position);
     return put_vector(position, to);
 }
 
-static char *put_normal(const hewn_mesh_job *job, uint64_t v, char *to)
+static char *put_normal(const hewn_mesh_writing *job, uint64_t v, char *to)
 {
     float normal[3];
     convert_normal(job, v, normal);
     return put_vector(normal, to);
 }
 
-static char *put_long_indices(const hewn_mesh_job *job, uint64_t t, char *to)
+static char *put_long_indices(const hewn_mesh_writing *job, uint64_t t, char *to)
 {
     for (int k = 0; k < 3; k++)
         to = hewn_put_u32(to, job->mesh->indices[3 * t + k]);
     return to;
 }
 
-static char *put_short_indices(const hewn_mesh_job *job, uint64_t t, char *to)
+static char *put_short_indices(const hewn_mesh_writing *job, uint64_t t, char *to)
 {
     for (int k = 0; k < 3; k++)
         to = hewn_put_u16(to, job->mesh->indices[3 * t + k]);
@@ -103,7 +103,7 @@ static uint64_t binary_length(const hewn_triangles *mesh)
     return mesh->vertex_count * vertex + mesh->triangle_count * triangle;
 }
 
-static hewn_result find_bounds(const hewn_mesh_job *job, hewn_gltf_desc *desc, hewn_error *error)
+static hewn_result find_bounds(const hewn_mesh_writing *job, hewn_gltf_desc *desc, hewn_error *error)
 {
     for (uint64_t v = 0; v < job->mesh->vertex_count; v++) {
         float p[3];
@@ -121,7 +121,7 @@ static hewn_result find_bounds(const hewn_mesh_job *job, hewn_gltf_desc *desc, h
 }
 
 /* The file's header, the JSON chunk and the binary chunk's header. */
-static hewn_result assemble_head(hewn_mesh_job *job, const hewn_text *json, hewn_error *error)
+static hewn_result assemble_head(hewn_mesh_writing *job, const hewn_text *json, hewn_error *error)
 {
     uint64_t text = (json->length + 3) & ~(uint64_t)3, binary = (binary_length(job->mesh) + 3) & ~(uint64_t)3;
     uint64_t head = 20 + text + (binary > 0 ? 8 : 0);
@@ -156,7 +156,7 @@ static hewn_result fits(const hewn_triangles *mesh, hewn_error *error)
     return HEWN_OK;
 }
 
-static hewn_result prepare(hewn_mesh_job *job, hewn_error *error)
+static hewn_result prepare(hewn_mesh_writing *job, hewn_error *error)
 {
     const hewn_triangles *mesh = job->mesh;
     hewn_text generator = {0}, json = {0};
@@ -179,7 +179,7 @@ static hewn_result prepare(hewn_mesh_job *job, hewn_error *error)
     return result;
 }
 
-static hewn_result write(const hewn_mesh_job *job, hewn_output *output, hewn_error *error)
+static hewn_result write(const hewn_mesh_writing *job, hewn_output *output, hewn_error *error)
 {
     const hewn_triangles *mesh = job->mesh;
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));

@@ -16,20 +16,20 @@ static char *put_vector(const float *vector, char *to)
     return to;
 }
 
-static char *put_position(const hewn_mesh_job *job, uint64_t v, char *to)
+static char *put_position(const hewn_mesh_writing *job, uint64_t v, char *to)
 {
     *to++ = 'v';
     return put_vector(job->mesh->positions + 3 * v, to);
 }
 
-static char *put_normal(const hewn_mesh_job *job, uint64_t v, char *to)
+static char *put_normal(const hewn_mesh_writing *job, uint64_t v, char *to)
 {
     *to++ = 'v';
     *to++ = 'n';
     return put_vector(job->mesh->normals + 3 * v, to);
 }
 
-static char *put_face(const hewn_mesh_job *job, uint64_t t, char *to)
+static char *put_face(const hewn_mesh_writing *job, uint64_t t, char *to)
 {
     *to++ = 'f';
     for (int k = 0; k < 3; k++) {
@@ -46,7 +46,7 @@ static char *put_face(const hewn_mesh_job *job, uint64_t t, char *to)
     return to;
 }
 
-static hewn_result prepare(hewn_mesh_job *job, hewn_error *error)
+static hewn_result prepare(hewn_mesh_writing *job, hewn_error *error)
 {
     hewn_text head = {0};
     char metres[HEWN_NUMBER_ROOM];
@@ -58,7 +58,7 @@ static hewn_result prepare(hewn_mesh_job *job, hewn_error *error)
     return hewn_text_status(&head, error);
 }
 
-static hewn_result write(const hewn_mesh_job *job, hewn_output *output, hewn_error *error)
+static hewn_result write(const hewn_mesh_writing *job, hewn_output *output, hewn_error *error)
 {
     uint64_t vertices = job->mesh->vertex_count;
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));

@@ -12,13 +12,13 @@ static char *put_vector(const float *vector, char *to)
     return to;
 }
 
-static char *put_vertex(const hewn_mesh_job *job, uint64_t v, char *to)
+static char *put_vertex(const hewn_mesh_writing *job, uint64_t v, char *to)
 {
     to = put_vector(job->mesh->positions + 3 * v, to);
     return job->mesh->normals ? put_vector(job->mesh->normals + 3 * v, to) : to;
 }
 
-static char *put_face(const hewn_mesh_job *job, uint64_t t, char *to)
+static char *put_face(const hewn_mesh_writing *job, uint64_t t, char *to)
 {
     *to++ = 3;
     for (int k = 0; k < 3; k++)
@@ -34,7 +34,7 @@ static hewn_result fits(const hewn_triangles *mesh, hewn_error *error)
     return HEWN_OK;
 }
 
-static hewn_result prepare(hewn_mesh_job *job, hewn_error *error)
+static hewn_result prepare(hewn_mesh_writing *job, hewn_error *error)
 {
     const hewn_triangles *mesh = job->mesh;
     hewn_text head = {0};
@@ -54,7 +54,7 @@ static hewn_result prepare(hewn_mesh_job *job, hewn_error *error)
     return hewn_text_status(&head, error);
 }
 
-static hewn_result write(const hewn_mesh_job *job, hewn_output *output, hewn_error *error)
+static hewn_result write(const hewn_mesh_writing *job, hewn_output *output, hewn_error *error)
 {
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
     hewn_stream vertices = {put_vertex, job->mesh->vertex_count, 24, 0, 0.5};

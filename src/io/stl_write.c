@@ -31,7 +31,7 @@ static char *put_vector(const float *vector, char *to)
     return to;
 }
 
-static char *put_facet(const hewn_mesh_job *job, uint64_t t, char *to)
+static char *put_facet(const hewn_mesh_writing *job, uint64_t t, char *to)
 {
     const uint32_t *corner = job->mesh->indices + 3 * t;
     const float *positions = job->mesh->positions;
@@ -56,7 +56,7 @@ static hewn_result fits(const hewn_triangles *mesh, hewn_error *error)
 }
 
 /* The header's text must not begin with "solid", by which readers know the text form. */
-static hewn_result prepare(hewn_mesh_job *job, hewn_error *error)
+static hewn_result prepare(hewn_mesh_writing *job, hewn_error *error)
 {
     char metres[HEWN_NUMBER_ROOM], count[4];
     *hewn_number_print_float(metres, (float)job->metres_per_unit) = '\0';
@@ -74,7 +74,7 @@ static hewn_result prepare(hewn_mesh_job *job, hewn_error *error)
     return hewn_text_status(&head, error);
 }
 
-static hewn_result write(const hewn_mesh_job *job, hewn_output *output, hewn_error *error)
+static hewn_result write(const hewn_mesh_writing *job, hewn_output *output, hewn_error *error)
 {
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
     hewn_stream facets = {put_facet, job->mesh->triangle_count, FACET, 0, 1};

@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/progress.h"
 
-static hewn_result write_block(const hewn_mesh_job *job, const hewn_stream *stream, uint64_t first, char *room,
+static hewn_result write_block(const hewn_mesh_writing *job, const hewn_stream *stream, uint64_t first, char *room,
                                hewn_output *output, hewn_error *error)
 {
     uint64_t end = stream->count - first < HEWN_WRITE_BLOCK ? stream->count : first + HEWN_WRITE_BLOCK;
@@ -15,7 +15,7 @@ static hewn_result write_block(const hewn_mesh_job *job, const hewn_stream *stre
     return hewn_progress_report(job->progress, "write", fraction, error);
 }
 
-hewn_result hewn_stream_write(const hewn_mesh_job *job, const hewn_stream *stream, hewn_output *output,
+hewn_result hewn_stream_write(const hewn_mesh_writing *job, const hewn_stream *stream, hewn_output *output,
                               hewn_error *error)
 {
     char *room = hewn_alloc(HEWN_WRITE_BLOCK, stream->room);

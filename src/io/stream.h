@@ -5,7 +5,7 @@
 #include "io/formats.h"
 
 /* Puts item `index` at `to` and returns its end. */
-typedef char *(*hewn_put_item)(const hewn_mesh_job *job, uint64_t index, char *to);
+typedef char *(*hewn_put_item)(const hewn_mesh_writing *job, uint64_t index, char *to);
 
 typedef struct hewn_stream {
     hewn_put_item put;
@@ -15,7 +15,7 @@ typedef struct hewn_stream {
 } hewn_stream;
 
 /* Writes all items. HEWN_IO, HEWN_CANCELLED, HEWN_OUT_OF_MEMORY. */
-hewn_result hewn_stream_write(const hewn_mesh_job *job, const hewn_stream *stream, hewn_output *output,
+hewn_result hewn_stream_write(const hewn_mesh_writing *job, const hewn_stream *stream, hewn_output *output,
                               hewn_error *error);
 
 #endif

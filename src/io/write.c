@@ -87,7 +87,7 @@ static hewn_result check_size(const hewn_triangles *mesh, const hewn_mesh_writer
     return writer->fits ? writer->fits(mesh, error) : HEWN_OK;
 }
 
-static hewn_result write_file(const hewn_mesh_writer *writer, const hewn_mesh_job *job, const char *path,
+static hewn_result write_file(const hewn_mesh_writer *writer, const hewn_mesh_writing *job, const char *path,
                               hewn_error *error)
 {
     hewn_output *output;
@@ -116,7 +116,7 @@ hewn_result hewn_mesh_write(const hewn_triangles *triangles, const char *path, c
     if (!(metres > 0 && isfinite(metres)))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%g metres a unit make no sense", metres);
     HEWN_TRY(check_size(triangles, writer, error));
-    hewn_mesh_job job = {.mesh = triangles, .metres_per_unit = metres, .up = wanted->up, .progress = wanted->progress};
+    hewn_mesh_writing job = {.mesh = triangles, .metres_per_unit = metres, .up = wanted->up, .progress = wanted->progress};
     char *name = object_name(wanted->name, path);
     job.name = name;
     hewn_result result =

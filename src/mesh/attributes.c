@@ -109,8 +109,7 @@ void *hewn_mesh_attribute_at(hewn_mesh *mesh, uint32_t attribute, uint32_t eleme
     return (void *)hewn_mesh_attribute_read(mesh, attribute, element);
 }
 
-/* --- what operations do to values ----------------------------------------------------------------------------------
- */
+/* --- what operations do to values --------------------------------------------------------------------------------- */
 
 bool hewn_mesh_has_values(const hewn_mesh *mesh, hewn_domain domain)
 {

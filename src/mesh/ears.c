@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "base/alloc.h"
-#include "mesh/plane.h"
+#include "geom/predicates.h"
 
 /* How much is asked of an ear. A proper polygon has ears of the first kind; the others are for polygons that touch or
  * cross themselves or have no area, so that cutting always goes on. */
@@ -17,7 +17,7 @@ typedef enum demand {
 
 /* More ways than this are not tried where an edge is forbidden. In polygons that are not proper the strictest demand is
  * made anew after each cut while at most SMALL_POLYGON corners are left. */
-enum { MOST_TRIES = 16, SMALL_POLYGON = 256 };
+enum { MOST_TRIES = 16, SMALL_POLYGON = 64 };
 
 typedef struct ear_cutting {
     const double *plane;
@@ -48,7 +48,7 @@ static bool holds_corner(const ear_cutting *cutting, uint32_t ear)
         const double *p = at(cutting, i);
         if (same_place(p, a) || same_place(p, b) || same_place(p, c))
             continue;
-        if (hewn_plane_turn(a, b, p) >= least && hewn_plane_turn(b, c, p) >= least && hewn_plane_turn(c, a, p) >= least)
+        if (hewn_orient2d(a, b, p) >= least && hewn_orient2d(b, c, p) >= least && hewn_orient2d(c, a, p) >= least)
             return true;
     }
     return false;
@@ -59,7 +59,7 @@ static double find_shape(const ear_cutting *cutting, uint32_t ear)
 {
     const double *a = at(cutting, cutting->prev[ear]), *b = at(cutting, ear), *c = at(cutting, cutting->next[ear]);
     if (cutting->demand < DEMAND_NONE) {
-        if (hewn_plane_turn(a, b, c) <= 0)
+        if (hewn_orient2d(a, b, c) <= 0)
             return -INFINITY;
         if (cutting->demand < DEMAND_CONVEX && holds_corner(cutting, ear))
             return -INFINITY;

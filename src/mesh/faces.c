@@ -20,8 +20,7 @@ hewn_result hewn_mesh_add_vert(hewn_mesh *mesh, const double position[3], hewn_v
     return HEWN_OK;
 }
 
-/* --- adding a face --------------------------------------------------------------------------------------------------
- */
+/* --- adding a face ------------------------------------------------------------------------------------------------ */
 
 /* The sides of a face to be: each the half-edge that is there already, or HEWN_NONE for one to be made. */
 typedef struct new_face {
@@ -126,8 +125,7 @@ hewn_result hewn_mesh_add_face(hewn_mesh *mesh, const hewn_vert *corners, uint32
     return result;
 }
 
-/* --- deleting -------------------------------------------------------------------------------------------------------
- */
+/* --- deleting ----------------------------------------------------------------------------------------------------- */
 
 static bool stands_alone(const hewn_mesh *mesh, uint32_t h)
 {

@@ -56,8 +56,8 @@ static void free_hole(hewn_hole *hole)
 {
     hewn_free(hole->rim);
     hewn_free(hole->normals);
-    hewn_free(hole->outer_sums);
-    hewn_free(hole->outer_count);
+    hewn_free(hole->outer);
+    hewn_free(hole->outer_area);
     hewn_free(hole->joined);
     hewn_free(hole->positions);
     hewn_free(hole->spacing);
@@ -69,13 +69,13 @@ static hewn_result create_hole(hewn_hole *hole, uint32_t count, hewn_error *erro
     *hole = (hewn_hole){.rim_count = count, .vertex_count = count};
     hole->rim = hewn_alloc(count, sizeof *hole->rim);
     hole->normals = hewn_alloc(count, 3 * sizeof(double));
-    hole->outer_sums = hewn_alloc_zero(count, 3 * sizeof(double));
-    hole->outer_count = hewn_alloc_zero(count, sizeof(double));
+    hole->outer = hewn_alloc_zero(count, 3 * sizeof(double));
+    hole->outer_area = hewn_alloc_zero(count, sizeof(double));
     hole->joined = hewn_alloc_zero((size_t)count * count, 1);
     hole->positions = hewn_alloc(count, 3 * sizeof(double));
     hole->spacing = hewn_alloc_zero(count, sizeof(double));
     hole->position_capacity = hole->spacing_capacity = count;
-    if (!hole->rim || !hole->normals || !hole->outer_sums || !hole->outer_count || !hole->joined || !hole->positions ||
+    if (!hole->rim || !hole->normals || !hole->outer || !hole->outer_area || !hole->joined || !hole->positions ||
         !hole->spacing)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory filling a hole of %u edges", count);
     return HEWN_OK;
@@ -113,10 +113,8 @@ static void add_edge(const filler *f, hewn_hole *hole, uint32_t i, uint32_t othe
     for (int axis = 0; axis < 3; axis++) {
         double difference = p[axis] - hole->positions[3 * (size_t)i + axis];
         length += difference * difference;
-        hole->outer_sums[3 * (size_t)i + axis] += p[axis];
     }
     hole->spacing[i] += sqrt(length);
-    hole->outer_count[i]++;
     if (f->place[other] != HEWN_NONE)
         hole->joined[(size_t)i * hole->rim_count + f->place[other]] = 1;
 }
@@ -127,17 +125,25 @@ static uint32_t side_before(const filler *f, uint32_t side)
     return side > f->soup->first[face] ? side - 1 : (uint32_t)f->soup->first[face + 1] - 1;
 }
 
-/* Walks the fan at rim vertex i, `side` being its open half-edge that leaves. */
+/* Walks the fan at rim vertex i, `side` being its open half-edge that leaves. A polygon stands for the triangle at its
+ * corner. */
 static void look_around(const filler *f, hewn_hole *hole, uint32_t i, uint32_t side)
 {
+    uint32_t count = 0;
     while (side != HEWN_NONE) {
-        add_edge(f, hole, i, hewn_side_head(f->soup, &f->sides, side));
         uint32_t before = side_before(f, side);
+        uint32_t next = hewn_side_head(f->soup, &f->sides, side), last = hewn_side_tail(f->soup, before);
+        double a[3], b[3];
+        local_position(f, hole, next, a);
+        local_position(f, hole, last, b);
+        hole->outer_area[i] += hewn_hole_corner(hole->positions + 3 * (size_t)i, a, b, hole->outer + 3 * (size_t)i);
+        add_edge(f, hole, i, next);
+        count++;
         side = f->mates[before];
         if (side == HEWN_NONE)
-            add_edge(f, hole, i, hewn_side_tail(f->soup, before));
+            add_edge(f, hole, i, last);
     }
-    hole->spacing[i] /= hole->outer_count[i];
+    hole->spacing[i] /= count + 1;
 }
 
 static void find_normal(const filler *f, uint32_t side, double out[3])

@@ -15,12 +15,12 @@ typedef struct hewn_patch_face {
 /* Vertices 0 to rim_count - 1 are the rim, in the order in which the patch's faces run along it; the rest are new. */
 typedef struct hewn_hole {
     uint32_t rim_count;
-    uint32_t *rim;       /* the soup's vertices */
-    double *normals;     /* × 3, unit: of the face across rim edge i, i + 1 */
-    double *outer_sums;  /* × 3: of the positions of the vertices that edges of the mesh join to rim vertex i */
-    double *outer_count; /* how many those are */
-    uint8_t *joined;     /* rim_count²: whether an edge of the mesh joins the two */
-    bool pillow;         /* a triangle already spans the rim's three vertices */
+    uint32_t *rim;      /* the soup's vertices */
+    double *normals;    /* × 3, unit: of the face across rim edge i, i + 1 */
+    double *outer;      /* × 3: what the faces of the mesh give to the Laplacian at rim vertex i */
+    double *outer_area; /* and to the area it stands for */
+    uint8_t *joined;    /* rim_count²: whether an edge of the mesh joins the two */
+    bool pillow;        /* a triangle already spans the rim's three vertices */
     double centre[3], size;
     uint32_t vertex_count, face_count;
     double *positions; /* × 3 */
@@ -37,12 +37,20 @@ hewn_result hewn_hole_triangulate(hewn_hole *hole, bool *found, hewn_error *erro
  * (Liepa 2003, after Pfeifle and Seidel 1996). At most rim_count² / 4 + 16 vertices. */
 hewn_result hewn_hole_refine(hewn_hole *hole, hewn_error *error);
 
-/* Moves the new vertices to where the squares of the umbrella vectors (rim included, so that the patch leaves it
- * smoothly) are least: a discrete thin plate (Kobbelt et al. 1998), solved by conjugate gradients. */
+/* Moves the new vertices to where the squared Laplacian (rim included, so that the patch leaves it smoothly) is least:
+ * a thin plate, its Laplacian by cotangents as in Meyer et al. 2003, solved by conjugate gradients. */
 hewn_result hewn_hole_fair(hewn_hole *hole, hewn_error *error);
 
 /* Whether an edge of the mesh or the patch joins vertices a and b; `face` is one at a. */
 bool hewn_hole_has_edge(const hewn_hole *hole, uint32_t face, uint32_t a, uint32_t b);
+
+/* Adds to `out` what a triangle at `corner` gives to the Laplacian there, as if it had the other two vertices only:
+ * half the cotangent at each end times the edge to the other. Returns a third of its area. All are positions of a hole.
+ */
+double hewn_hole_corner(const double *corner, const double *a, const double *b, double out[3]);
+
+/* Half the cotangent of the angle at `tip` over the edge a, b; kept between -50 and 50. */
+double hewn_hole_cotangent(const double *tip, const double *a, const double *b);
 
 /* Twice the area vector of three vertices of the hole; and its length. */
 double hewn_hole_normal(const hewn_hole *hole, uint32_t a, uint32_t b, uint32_t c, double out[3]);

@@ -5,7 +5,7 @@
 
 #include "base/alloc.h"
 
-/* --- life ------------------------------------------------------------------------------------------------------- */
+/* --- life --------------------------------------------------------------------------------------------------------- */
 
 hewn_result hewn_mesh_create(hewn_mesh **out, hewn_error *error)
 {
@@ -44,7 +44,7 @@ hewn_result hewn_mesh_duplicate(const hewn_mesh *mesh, hewn_mesh **out, hewn_err
     return result;
 }
 
-/* --- growth ------------------------------------------------------------------------------------------------------ */
+/* --- growth ------------------------------------------------------------------------------------------------------- */
 
 /* The capacity that holds `more` ids past `bound`: as it is, or half as much again. */
 static hewn_result enough(uint32_t bound, uint64_t more, uint32_t *capacity, hewn_error *error)
@@ -125,7 +125,7 @@ hewn_result hewn_mesh_reserve(hewn_mesh *mesh, uint32_t verts, uint32_t edges, u
     return grow_faces(mesh, face_capacity, error);
 }
 
-/* --- elements ---------------------------------------------------------------------------------------------------- */
+/* --- elements ----------------------------------------------------------------------------------------------------- */
 
 uint32_t hewn_mesh_new_vert(hewn_mesh *mesh, const double position[3])
 {
@@ -193,7 +193,7 @@ void hewn_mesh_settle_vert(hewn_mesh *mesh, uint32_t v, uint32_t start)
     } while (h != start);
 }
 
-/* --- sizes ------------------------------------------------------------------------------------------------------- */
+/* --- sizes -------------------------------------------------------------------------------------------------------- */
 
 uint32_t hewn_mesh_vert_count(const hewn_mesh *mesh)
 {
@@ -241,7 +241,7 @@ size_t hewn_mesh_bytes(const hewn_mesh *mesh)
     return bytes;
 }
 
-/* --- positions --------------------------------------------------------------------------------------------------- */
+/* --- positions ---------------------------------------------------------------------------------------------------- */
 
 const double *hewn_vert_position(const hewn_mesh *mesh, hewn_vert vert)
 {

@@ -89,28 +89,37 @@ static size_t halve(const near_search *search, const near_box *box, uint32_t *li
     return low;
 }
 
-static void join_pair(const near_search *search, uint32_t a, uint32_t b)
+static bool pair_near(const near_search *search, uint32_t a, uint32_t b)
 {
     const double *p = point_at(search, a), *q = point_at(search, b);
     double difference[3] = {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-    if (within(search, difference))
-        hewn_sets_join(search->parent, a, b);
+    return within(search, difference);
 }
 
-/* Both lists have been joined within themselves, so lists in boxes that are near as a whole are one set each. */
+/* `whole`: each list is one set, so one pair joins all. */
+static void join_pairs(const near_search *search, const uint32_t *a, size_t a_count, const uint32_t *b, size_t b_count,
+                       bool whole)
+{
+    for (size_t i = 0; i < a_count; i++)
+        for (size_t k = 0; k < b_count; k++)
+            if (pair_near(search, a[i], b[k])) {
+                hewn_sets_join(search->parent, a[i], b[k]);
+                if (whole)
+                    return;
+            }
+}
+
+/* Both lists have been joined within themselves, so a list in a box that is near as a whole is one set. */
 static void join_between(const near_search *search, uint32_t *a, size_t a_count, uint32_t *b, size_t b_count)
 {
     near_box a_box = box_of(search, a, a_count), b_box = box_of(search, b, b_count);
     if (!boxes_near(search, &a_box, &b_box))
         return;
-    if (boxes_all_near(search, &a_box, &b_box)) {
-        hewn_sets_join(search->parent, a[0], b[0]);
+    bool whole = boxes_all_near(search, &a_box, &a_box) && boxes_all_near(search, &b_box, &b_box);
+    if (whole && hewn_sets_find(search->parent, a[0]) == hewn_sets_find(search->parent, b[0]))
         return;
-    }
-    if (a_count * b_count <= FEW_PAIRS) {
-        for (size_t i = 0; i < a_count; i++)
-            for (size_t k = 0; k < b_count; k++)
-                join_pair(search, a[i], b[k]);
+    if (boxes_all_near(search, &a_box, &b_box) || a_count * b_count <= FEW_PAIRS) {
+        join_pairs(search, a, a_count, b, b_count, whole);
         return;
     }
     int axis;
@@ -136,9 +145,8 @@ static void join_within(const near_search *search, uint32_t *list, size_t count)
         return;
     }
     if (count * count <= FEW_PAIRS) {
-        for (size_t i = 0; i < count; i++)
-            for (size_t k = 0; k < i; k++)
-                join_pair(search, list[i], list[k]);
+        for (size_t i = 1; i < count; i++)
+            join_pairs(search, list + i, 1, list, i, false);
         return;
     }
     size_t low = halve(search, &box, list, count);

@@ -2,49 +2,9 @@
 
 #include <math.h>
 
-/* --- turning --------------------------------------------------------------------------------------------------------
- */
+#include "geom/predicates.h"
 
-/* Adds a number to an expansion of parts that do not overlap, least first. */
-static void expansion_add(double *parts, int *count, double value)
-{
-    double sum = value;
-    for (int i = 0; i < *count; i++) {
-        double a = sum, b = parts[i];
-        sum = a + b;
-        double b_virtual = sum - a;
-        parts[i] = (a - (sum - b_virtual)) + (b - b_virtual);
-    }
-    parts[(*count)++] = sum;
-}
-
-static int exact_turn(const double a[2], const double b[2], const double c[2])
-{
-    const double factors[6][2] = {{a[0], b[1]},  {-a[1], b[0]}, {b[0], c[1]},
-                                  {-b[1], c[0]}, {c[0], a[1]},  {-c[1], a[0]}};
-    double parts[12];
-    int count = 0;
-    for (int i = 0; i < 6; i++) {
-        double product = factors[i][0] * factors[i][1];
-        expansion_add(parts, &count, fma(factors[i][0], factors[i][1], -product));
-        expansion_add(parts, &count, product);
-    }
-    while (count > 0 && parts[count - 1] == 0)
-        count--;
-    return count == 0 ? 0 : parts[count - 1] > 0 ? 1 : -1;
-}
-
-int hewn_plane_turn(const double a[2], const double b[2], const double c[2])
-{
-    double left = (a[0] - c[0]) * (b[1] - c[1]), right = (a[1] - c[1]) * (b[0] - c[0]);
-    double area = left - right, bound = 4.0 * 0x1p-53 * (fabs(left) + fabs(right));
-    if (area > bound || -area > bound)
-        return area > 0 ? 1 : -1;
-    return exact_turn(a, b, c);
-}
-
-/* --- projecting -----------------------------------------------------------------------------------------------------
- */
+/* --- projecting --------------------------------------------------------------------------------------------------- */
 
 /* The exponent that brings all coordinates to at most 1 in size. */
 static int common_exponent(const double *const *corners, uint32_t count)
@@ -99,8 +59,7 @@ void hewn_plane_project(const double *const *points, uint32_t count, uint32_t po
     }
 }
 
-/* --- weights --------------------------------------------------------------------------------------------------------
- */
+/* --- weights ------------------------------------------------------------------------------------------------------ */
 
 /* Weights beyond this say that the polygon crosses itself or the point is far outside: they would blow values up. */
 static const double MOST_WEIGHT = 64;
@@ -129,7 +88,7 @@ void hewn_plane_weights(const double *polygon, uint32_t count, const double poin
         double ax = a[0] - point[0], ay = a[1] - point[1], bx = b[0] - point[0], by = b[1] - point[1];
         double length_a = distance(polygon, i, point), length_b = distance(polygon, j, point);
         double dot = ax * bx + ay * by, cross = ax * by - ay * bx;
-        if (length_a == 0 || length_b == 0 || (hewn_plane_turn(a, b, point) == 0 && dot < 0)) {
+        if (length_a == 0 || length_b == 0 || (hewn_orient2d(a, b, point) == 0 && dot < 0)) {
             share_side(weights, count, i, j, length_a, length_b);
             return;
         }

@@ -1,12 +1,8 @@
-/* Polygons seen in the plane: which way a turn goes, decided exactly. */
+/* Polygons seen in the plane. */
 #ifndef HEWN_SRC_MESH_PLANE_H
 #define HEWN_SRC_MESH_PLANE_H
 
 #include "base/error.h"
-
-/* The sign of the area of the triangle a b c: 1 counter-clockwise, -1 clockwise, 0 exactly straight. Exact for
- * coordinates whose products neither overflow nor underflow (Shewchuk 1997 for the filter and the expansions). */
-int hewn_plane_turn(const double a[2], const double b[2], const double c[2]);
 
 /* Points dropped onto the coordinate plane nearest to the plane of best fit of the first `count`, the corners of a
  * polygon, seen from the side that Newell's normal points to, and scaled by one power of two to at most 1 in size.

@@ -4,8 +4,7 @@
 
 #include "base/alloc.h"
 
-/* --- turning over ---------------------------------------------------------------------------------------------------
- */
+/* --- turning over ------------------------------------------------------------------------------------------------- */
 
 /* Corner values follow their vertex: the half-edge that will end where h ends is the one after it in the old order. */
 static void rotate_corners(hewn_mesh *mesh, uint32_t first)
@@ -52,8 +51,7 @@ void hewn_mesh_reverse_topology(hewn_mesh *mesh)
     }
 }
 
-/* --- normals --------------------------------------------------------------------------------------------------------
- */
+/* --- normals ------------------------------------------------------------------------------------------------------ */
 
 static void read_normal(const mesh_attribute *attribute, uint32_t element, double out[3])
 {
@@ -101,8 +99,7 @@ void hewn_mesh_reverse(hewn_mesh *mesh)
     turn_normals(mesh, minus, false);
 }
 
-/* --- matrices -------------------------------------------------------------------------------------------------------
- */
+/* --- matrices ----------------------------------------------------------------------------------------------------- */
 
 static void apply(const double matrix[12], const double point[3], double out[3])
 {
@@ -111,21 +108,29 @@ static void apply(const double matrix[12], const double point[3], double out[3])
             matrix[4 * k] * point[0] + matrix[4 * k + 1] * point[1] + matrix[4 * k + 2] * point[2] + matrix[4 * k + 3];
 }
 
-/* The cofactors of the 3 x 3 part, scaled to a size near 1: the inverse transpose times the determinant. Returns the
- * determinant of the scaled part. */
-static double cofactors(const double matrix[12], double out[9])
+/* A multiple of the inverse transpose of the 3 x 3 part, and the determinant of that part with its rows scaled to a
+ * size near 1: the cofactors of the scaled part, each row divided by its scale again. */
+static double inverse_transpose(const double matrix[12], double out[9])
 {
-    double part[9], most = 0;
-    for (int i = 0; i < 9; i++)
-        most = fmax(most, fabs(matrix[i / 3 * 4 + i % 3]));
-    for (int i = 0; i < 9; i++)
-        part[i] = most > 0 ? matrix[i / 3 * 4 + i % 3] / most : 0;
+    double part[9], scale[3], least = INFINITY;
+    for (int row = 0; row < 3; row++) {
+        const double *at = matrix + 4 * row;
+        scale[row] = fmax(fabs(at[0]), fmax(fabs(at[1]), fabs(at[2])));
+        if (scale[row] == 0)
+            return 0;
+        least = fmin(least, scale[row]);
+        for (int column = 0; column < 3; column++)
+            part[3 * row + column] = at[column] / scale[row];
+    }
     for (int row = 0; row < 3; row++)
         for (int column = 0; column < 3; column++) {
             int r1 = (row + 1) % 3, r2 = (row + 2) % 3, c1 = (column + 1) % 3, c2 = (column + 2) % 3;
             out[3 * row + column] = part[3 * r1 + c1] * part[3 * r2 + c2] - part[3 * r1 + c2] * part[3 * r2 + c1];
         }
-    return part[0] * out[0] + part[1] * out[1] + part[2] * out[2];
+    double determinant = part[0] * out[0] + part[1] * out[1] + part[2] * out[2];
+    for (int i = 0; i < 9; i++)
+        out[i] *= least / scale[i / 3];
+    return determinant;
 }
 
 static hewn_result check_positions(const hewn_mesh *mesh, const double matrix[12], hewn_error *error)
@@ -147,7 +152,7 @@ hewn_result hewn_mesh_transform(hewn_mesh *mesh, const double matrix[12], hewn_e
     for (int i = 0; i < 12; i++)
         if (!isfinite(matrix[i]))
             return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the matrix is not finite");
-    double determinant = cofactors(matrix, normals);
+    double determinant = inverse_transpose(matrix, normals);
     if (determinant == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the matrix is singular");
     HEWN_TRY(check_positions(mesh, matrix, error));

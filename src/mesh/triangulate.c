@@ -4,8 +4,7 @@
 #include "mesh/ears.h"
 #include "mesh/plane.h"
 
-/* --- planning -------------------------------------------------------------------------------------------------------
- */
+/* --- planning ----------------------------------------------------------------------------------------------------- */
 
 typedef struct face_plan {
     const hewn_mesh *mesh;
@@ -56,8 +55,7 @@ static hewn_result lay_out(const hewn_mesh *mesh, uint32_t f, face_plan *out, he
     return HEWN_OK;
 }
 
-/* --- cutting --------------------------------------------------------------------------------------------------------
- */
+/* --- cutting ------------------------------------------------------------------------------------------------------ */
 
 /* Cuts off the corner at the head of `in`, in what is left of a face; returns the face that is left. The triangle gets
  * a new face unless it has the first corner's half-edge of `f`, which stays with f: so the cuts of f can be undone. */
@@ -125,8 +123,7 @@ hewn_result hewn_mesh_triangulate_face(hewn_mesh *mesh, hewn_face face, hewn_err
     return mesh_in_triangle(mesh, mesh->face_half[face.id]) ? HEWN_OK : cut_face(mesh, face.id, error);
 }
 
-/* --- all faces ------------------------------------------------------------------------------------------------------
- */
+/* --- all faces ---------------------------------------------------------------------------------------------------- */
 
 /* Takes back all cuts since the mesh had these bounds. */
 static void join_faces(hewn_mesh *mesh, uint32_t half_bound, uint32_t face_bound)

@@ -13,8 +13,7 @@ void hewn_winged_edges_destroy(hewn_winged_edges *edges)
     *edges = (hewn_winged_edges){0};
 }
 
-/* --- from a mesh ----------------------------------------------------------------------------------------------------
- */
+/* --- from a mesh -------------------------------------------------------------------------------------------------- */
 
 static hewn_winged_edge record(const hewn_mesh *mesh, uint32_t h)
 {
@@ -53,8 +52,7 @@ hewn_result hewn_winged_edges_from_mesh(const hewn_mesh *mesh, hewn_winged_edges
     return HEWN_OK;
 }
 
-/* --- to a mesh ------------------------------------------------------------------------------------------------------
- */
+/* --- to a mesh ---------------------------------------------------------------------------------------------------- */
 
 static hewn_result check_record(const hewn_winged_edges *all, uint32_t e, hewn_error *error)
 {

@@ -3,12 +3,14 @@
 
 #include <omp.h>
 
-/* --- a slow judge --------------------------------------------------------------------------------------------------- */
+/* --- a slow judge ------------------------------------------------------------------------------------------------- */
 
-/* Whether the triangles are a 2-manifold with boundary, found by comparing all pairs and by flooding around vertices. */
+/* Whether the triangles are a 2-manifold with boundary, found by comparing all pairs and by flooding around vertices.
+ */
 static bool edge_runs(const uint32_t *corner, uint32_t a, uint32_t b)
 {
-    return (corner[0] == a && corner[1] == b) || (corner[1] == a && corner[2] == b) || (corner[2] == a && corner[0] == b);
+    return (corner[0] == a && corner[1] == b) || (corner[1] == a && corner[2] == b) ||
+           (corner[2] == a && corner[0] == b);
 }
 
 static bool share_edge_at(const uint32_t *s, const uint32_t *t, uint32_t v)
@@ -90,7 +92,7 @@ static void test_small_soups(void **state)
     assert_true(good > runs / 50);
 }
 
-/* --- what is refused ------------------------------------------------------------------------------------------------ */
+/* --- what is refused ---------------------------------------------------------------------------------------------- */
 
 static void refuse(const uint64_t *first, const uint32_t *corners, uint64_t faces, uint64_t verts, const char *text)
 {
@@ -104,14 +106,16 @@ static void refuse(const uint64_t *first, const uint32_t *corners, uint64_t face
 static void test_offenders_are_named(void **state)
 {
     (void)state;
-    refuse(NULL, (const uint32_t[]){0, 1, 2, 0, 2, 9, 7, 7, 7}, 3, 5, "face 1 names the vertex 9, but there are only 5");
+    refuse(NULL, (const uint32_t[]){0, 1, 2, 0, 2, 9, 7, 7, 7}, 3, 5,
+           "face 1 names the vertex 9, but there are only 5");
     refuse(NULL, (const uint32_t[]){0, 1, 2, 3, 4, 3, 9, 9, 9}, 3, 5, "face 1 has the vertex 3 twice");
     refuse((const uint64_t[]){0, 3, 5}, (const uint32_t[]){0, 1, 2, 0, 2}, 2, 5, "face 1 has fewer than three corners");
     refuse((const uint64_t[]){0, 4, 2, 8}, (const uint32_t[]){0, 1, 2, 3, 4, 5, 6, 7}, 3, 9, "face 1 has fewer");
     refuse((const uint64_t[]){0, 5}, (const uint32_t[]){0, 1, 2, 3, 1}, 1, 5, "face 0 has the vertex 1 twice");
     refuse(NULL, (const uint32_t[]){0, 1, 2, 0, 1, 3}, 2, 4,
            "the faces 0 and 1 run along the edge from vertex 0 to vertex 1 the same way");
-    refuse(NULL, (const uint32_t[]){2, 1, 0, 3, 1, 0}, 2, 4, "run along the edge from vertex 1 to vertex 0 the same way");
+    refuse(NULL, (const uint32_t[]){2, 1, 0, 3, 1, 0}, 2, 4,
+           "run along the edge from vertex 1 to vertex 0 the same way");
     refuse(NULL, (const uint32_t[]){4, 2, 3, 2, 4, 5, 4, 2, 6}, 3, 7,
            "the edge between the vertices 2 and 4 has 3 faces");
     refuse(NULL, (const uint32_t[]){0, 1, 2, 2, 3, 4}, 2, 5, "the faces around vertex 2 form more than one fan");
@@ -154,7 +158,7 @@ static void test_arguments(void **state)
     hewn_mesh_destroy(&mesh);
 }
 
-/* --- larger meshes -------------------------------------------------------------------------------------------------- */
+/* --- larger meshes ------------------------------------------------------------------------------------------------ */
 
 static void assert_same_mesh(const hewn_mesh *a, const hewn_mesh *b)
 {
@@ -162,10 +166,9 @@ static void assert_same_mesh(const hewn_mesh *a, const hewn_mesh *b)
     assert_int_equal(hewn_mesh_vert_bound(a), hewn_mesh_vert_bound(b));
     for (uint32_t i = 0; i < hewn_mesh_half_bound(a); i++) {
         hewn_half h = {i};
-        assert_true(hewn_half_next(a, h).id == hewn_half_next(b, h).id &&
-                    hewn_half_prev(a, h).id == hewn_half_prev(b, h).id &&
-                    hewn_half_head(a, h).id == hewn_half_head(b, h).id &&
-                    hewn_half_face(a, h).id == hewn_half_face(b, h).id);
+        assert_true(
+            hewn_half_next(a, h).id == hewn_half_next(b, h).id && hewn_half_prev(a, h).id == hewn_half_prev(b, h).id &&
+            hewn_half_head(a, h).id == hewn_half_head(b, h).id && hewn_half_face(a, h).id == hewn_half_face(b, h).id);
     }
     for (uint32_t v = 0; v < hewn_mesh_vert_bound(a); v++)
         assert_int_equal(hewn_vert_half(a, (hewn_vert){v}).id, hewn_vert_half(b, (hewn_vert){v}).id);
@@ -272,9 +275,9 @@ static void test_numbering(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_small_soups),   cmocka_unit_test(test_offenders_are_named),
-        cmocka_unit_test(test_arguments),     cmocka_unit_test(test_threads_agree),
-        cmocka_unit_test(test_numbering),     cmocka_unit_test(test_triangles_there_and_back),
+        cmocka_unit_test(test_small_soups), cmocka_unit_test(test_offenders_are_named),
+        cmocka_unit_test(test_arguments),   cmocka_unit_test(test_threads_agree),
+        cmocka_unit_test(test_numbering),   cmocka_unit_test(test_triangles_there_and_back),
     };
     return cmocka_run_group_tests_name("mesh_build", tests, NULL, NULL);
 }

@@ -108,8 +108,7 @@ static inline hewn_mesh *torus(uint32_t n, uint32_t m)
     return mesh;
 }
 
-/* --- attributes that follow -----------------------------------------------------------------------------------------
- */
+/* --- attributes that follow --------------------------------------------------------------------------------------- */
 
 static inline uint32_t attribute_named(const hewn_mesh *mesh, hewn_domain domain, const char *name)
 {

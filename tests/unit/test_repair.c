@@ -40,7 +40,7 @@ static void test_random_triangles(void **state)
 {
     (void)state;
     random_state random = {1};
-    for (uint32_t round = 0; round < rounds(3000); round++) {
+    for (uint32_t round = 0; round < rounds(600); round++) {
         hewn_repair_desc desc = random_desc(&random);
         builder soup = random_soup(&random, false);
         repaired result = repair(&soup.polygons, &desc);
@@ -54,7 +54,7 @@ static void test_random_polygons(void **state)
 {
     (void)state;
     random_state random = {2};
-    for (uint32_t round = 0; round < rounds(2000); round++) {
+    for (uint32_t round = 0; round < rounds(500); round++) {
         hewn_repair_desc desc = random_desc(&random);
         builder soup = random_soup(&random, true);
         repaired result = repair(&soup.polygons, &desc);
@@ -68,7 +68,7 @@ static void test_same_bytes(void **state)
 {
     (void)state;
     random_state random = {3};
-    for (uint32_t round = 0; round < rounds(200); round++) {
+    for (uint32_t round = 0; round < rounds(60); round++) {
         hewn_repair_desc desc = random_desc(&random);
         builder soup = random_soup(&random, true);
         repaired a = repair(&soup.polygons, &desc), b = repair(&soup.polygons, &desc);

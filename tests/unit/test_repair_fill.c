@@ -55,18 +55,19 @@ static void test_sphere_without_a_cap(void **state)
         repaired fair = repair(&soup.polygons, &(hewn_repair_desc){.fill_edges = 48});
         check_idempotent(&fair, &(hewn_repair_desc){.fill_edges = 48});
         free_builder(&soup);
-        double whole = 4 * M_PI / 3 * 125;
+        double whole = 4 * M_PI / 3 * 125, worst = 0;
         assert_true(flat.certificate.closed && fair.certificate.closed);
         assert_int_equal(flat.report.added_vertices, 0);
         assert_int_equal(flat.report.added_faces, 46);
         assert_true(fair.report.added_vertices > 30 && fair.report.added_vertices < 2000);
         double missing = whole - flat.certificate.volume, left = whole - fair.certificate.volume;
-        assert_true(missing > 0 && fabs(left) < 0.015 * whole && fabs(left) < 0.8 * missing);
+        assert_true(missing > 0);
         for (uint32_t v = 0; v < fair.origins.vertex_count; v++) {
             const double *p = hewn_vert_position(fair.mesh, (hewn_vert){v});
             double radius = sqrt(pow(p[0] - centre[0], 2) + pow(p[1] - centre[1], 2) + pow(p[2] - centre[2], 2));
-            assert_true(fabs(radius - 5) < 0.3);
+            worst = fmax(worst, fabs(radius - 5));
         }
+        assert_true(fabs(left) < 0.01 * whole && worst < 0.2);
         free_repaired(&flat);
         free_repaired(&fair);
     }

@@ -148,7 +148,7 @@ static void test_dense_clouds_take_no_time(void **state)
 {
     (void)state;
     random_state random = {6};
-    enum { COUNT = 100000 };
+    enum { COUNT = 40000 };
     for (int kind = 0; kind < 3; kind++) {
         builder soup = make_builder(COUNT, 1, 1);
         for (uint32_t v = 0; v < COUNT; v++) {

@@ -316,6 +316,34 @@ static void test_line_grid(void **state)
     check_grid(effort(1000, 25), 5, 1, 4);
 }
 
+/* One face without area, a short segment or a point, in, on and around the other. */
+static void test_without_area(void **state)
+{
+    (void)state;
+    random_state random = {8};
+    for (int shared = 0; shared < 3; shared++) {
+        tally sum = {0};
+        for (int round = 0, rounds = effort(2000, 35); round < rounds; round++) {
+            double vertex[6][3] = {0};
+            int axes = 2 + (int)random_below(&random, 2), step[3];
+            for (int k = 0; k < 4 * axes; k++)
+                vertex[k / axes][k % axes] = random_below(&random, 9);
+            for (int i = 0; i < 3; i++)
+                step[i] = (int)random_below(&random, 3) - 1;
+            const double *from = vertex[shared > 0 ? 0 : 3];
+            for (int k = shared > 1 ? 1 : 4; k < 6; k += k == 1 ? 4 : 1) {
+                int steps = (int)random_below(&random, 5) - 2;
+                for (int i = 0; i < 3; i++)
+                    vertex[k][i] = from[i] + (i < axes ? steps * step[i] : 0);
+            }
+            hewn_facet f, g;
+            make_pair(&random, vertex, shared, false, &f, &g);
+            check_pair(&f, &g, &sum);
+        }
+        assert_true(sum.proper > 100 && sum.improper > 10);
+    }
+}
+
 /* Every way to put five corners of two faces that share a vertex, and four of two that share an edge, on the corners of
  * a cube; and of two that share none, one way for each set of three. */
 static void test_all_on_a_cube(void **state)
@@ -397,15 +425,18 @@ static void test_named(void **state)
     assert_false(meet(flat, (double[]){4, 0, 0, 0, 0, 0, 0, -4, 0}, edge));     /* goes on flat */
     assert_true(meet(flat, (double[]){4, 0, 0, 0, 0, 0, 9, 1, 0}, edge));       /* folds back */
     assert_false(meet(flat, (double[]){4, 0, 0, 0, 0, 0, 9, 1, 1e-300}, edge)); /* does not quite */
+    assert_true(meet(flat, (double[]){1, 1, 0, 1.25, 1, 0, 1.5, 1, 0}, none));  /* a segment inside */
+    assert_true(meet(flat, (double[]){1, 1, 0, 1, 1, 0, 1, 1, 0}, none));       /* a point inside */
     assert_true(meet(flat, (double[]){0, 4, 0, 0, 0, 0, 4, 0, 0}, all));        /* twice the same */
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_named),           cmocka_unit_test(test_small_grid), cmocka_unit_test(test_larger_grid),
-        cmocka_unit_test(test_plane_grid),      cmocka_unit_test(test_line_grid),  cmocka_unit_test(test_all_on_a_cube),
-        cmocka_unit_test(test_nearly_touching),
+        cmocka_unit_test(test_named),           cmocka_unit_test(test_small_grid),
+        cmocka_unit_test(test_larger_grid),     cmocka_unit_test(test_plane_grid),
+        cmocka_unit_test(test_line_grid),       cmocka_unit_test(test_all_on_a_cube),
+        cmocka_unit_test(test_nearly_touching), cmocka_unit_test(test_without_area),
     };
     return cmocka_run_group_tests_name("triangle_meet", tests, NULL, NULL);
 }
