@@ -66,8 +66,8 @@ static hewn_result choose_blocks(hewn_code *code, hewn_error *error)
     return HEWN_OK;
 }
 
-static hewn_result create(hewn_device *device, const hewn_field *field, hewn_node root, bool fixed, hewn_code **out,
-                          hewn_error *error)
+hewn_result hewn_code_create_with(hewn_device *device, const hewn_field *field, hewn_node root, hewn_numbers numbers,
+                                  hewn_code **out, hewn_error *error)
 {
     *out = NULL;
     hewn_code *code = hewn_alloc_zero(1, sizeof *code);
@@ -78,7 +78,8 @@ static hewn_result create(hewn_device *device, const hewn_field *field, hewn_nod
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a field's code");
     }
     hewn_result result = hewn_listing_create(&code->listing, field, root, error);
-    code->listing.fixed = fixed;
+    code->listing.fixed =
+        numbers == HEWN_NUMBERS_IN_CODE || (numbers == HEWN_NUMBERS_AUTO && device->info.kind == HEWN_DEVICE_CPU);
     if (result == HEWN_OK)
         result = choose_blocks(code, error);
     if (result == HEWN_OK)
@@ -92,13 +93,7 @@ static hewn_result create(hewn_device *device, const hewn_field *field, hewn_nod
 hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
                              hewn_error *error)
 {
-    return create(device, field, root, false, out, error);
-}
-
-hewn_result hewn_code_create_fixed(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
-                                   hewn_error *error)
-{
-    return create(device, field, root, true, out, error);
+    return hewn_code_create_with(device, field, root, HEWN_NUMBERS_AUTO, out, error);
 }
 
 void hewn_code_destroy(hewn_device *device, hewn_code **code)

@@ -1,5 +1,4 @@
-/* A field made into shader code: one emitter, three flavours (point, interval, gradient), parameters in a buffer, so
- * that a changed number needs no compilation. */
+/* A field made into shader code: one emitter, three flavours (point, interval, gradient). */
 #ifndef HEWN_SRC_EVAL_CODE_H
 #define HEWN_SRC_EVAL_CODE_H
 
@@ -20,16 +19,20 @@ typedef enum hewn_flavour {
                             code and defines it. What does not depend on x is evaluated once a row. */
 } hewn_flavour;
 
+/* Where the field's numbers live. In a buffer, another number of the same field needs no compilation. In the code, it
+ * does; but CPU drivers compile every read of a buffer as a branch, which makes the first compilation ten times as
+ * long. Values have the same bits either way. */
+typedef enum hewn_numbers {
+    HEWN_NUMBERS_AUTO, /* in the code on CPU devices, else in a buffer */
+    HEWN_NUMBERS_IN_BUFFER,
+    HEWN_NUMBERS_IN_CODE
+} hewn_numbers;
+
 /* Reads what it needs of the field, which may change or go afterwards. */
 hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
                              hewn_error *error);
-
-/* The same with all numbers in the code instead of a buffer: for one job, not for edits, since any other number
- * compiles anew. On CPU drivers the first compilation takes a quarter of the time, for there every read of a buffer is
- * a branch to compile. Values have the same bits. */
-hewn_result hewn_code_create_fixed(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
-                                   hewn_error *error);
-
+hewn_result hewn_code_create_with(hewn_device *device, const hewn_field *field, hewn_node root, hewn_numbers numbers,
+                                  hewn_code **out, hewn_error *error);
 void hewn_code_destroy(hewn_device *device, hewn_code **code);
 
 /* A kernel that calls the field. Its text is `head` (starts with #version and extensions; `common` below is appended by

@@ -112,9 +112,9 @@ static hewn_result fill_positions(const mesh_source *source, double *positions, 
 
 static hewn_result allocate_verts(const mesh_source *source, hewn_mesh *mesh, hewn_error *error)
 {
-    mesh->vert_half = hewn_mesh_alloc_pages(source->vert_count, sizeof *mesh->vert_half);
-    mesh->position = hewn_mesh_alloc_pages(source->vert_count, 3 * sizeof *mesh->position);
-    mesh->face_half = hewn_mesh_alloc_pages(source->face_count, sizeof *mesh->face_half);
+    mesh->vert_half = hewn_alloc(source->vert_count, sizeof *mesh->vert_half);
+    mesh->position = hewn_alloc(source->vert_count, 3 * sizeof *mesh->position);
+    mesh->face_half = hewn_alloc(source->face_count, sizeof *mesh->face_half);
     if (!mesh->vert_half || !mesh->position || !mesh->face_half)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a mesh of %u faces", source->face_count);
     mesh->vert_bound = mesh->vert_capacity = mesh->live_verts = source->vert_count;
@@ -134,9 +134,9 @@ static hewn_result allocate_halves(mesh_matching *matching, hewn_mesh *mesh, hew
     mesh->next = hewn_realloc(matching->entries, count, sizeof *mesh->next);
     if (mesh->next)
         matching->entries = NULL;
-    mesh->head = hewn_mesh_alloc_pages(count, sizeof *mesh->head);
-    mesh->prev = hewn_mesh_alloc_pages(count, sizeof *mesh->prev);
-    mesh->face = hewn_mesh_alloc_pages(count, sizeof *mesh->face);
+    mesh->head = hewn_alloc(count, sizeof *mesh->head);
+    mesh->prev = hewn_alloc(count, sizeof *mesh->prev);
+    mesh->face = hewn_alloc(count, sizeof *mesh->face);
     if (!mesh->head || !mesh->next || !mesh->prev || !mesh->face)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a mesh of %u edges", edges);
     mesh->half_bound = mesh->half_capacity = (uint32_t)count;

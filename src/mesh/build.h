@@ -41,10 +41,6 @@ typedef struct mesh_matching {
     uint32_t *halves;    /* of each corner, counted from the part's first edge */
 } mesh_matching;
 
-/* An uninitialised block that is about to be filled: where it is large the system is asked to back it with large pages,
- * since otherwise half of the time of a build goes into page faults. NULL when out of memory. */
-void *hewn_mesh_alloc_pages(size_t count, size_t size);
-
 /* HEWN_OUT_OF_MEMORY. Whether there is a fault is for the caller to see. `any_corner` (one a vertex) gets the last
  * corner at each vertex, HEWN_NONE where there is none. */
 hewn_result hewn_mesh_match(const mesh_source *source, uint32_t *any_corner, mesh_matching *out, hewn_error *error);

@@ -2,27 +2,12 @@
 
 #include <omp.h>
 #include <stdlib.h>
-#include <sys/mman.h>
 
 #include "base/alloc.h"
 
 /* Below so many corners threads are not worth their start. Buckets of more half-edges than SMALL_BUCKET either way are
  * sorted. */
-enum { CORNERS_A_PART = 1 << 14, SMALL_BUCKET = 16, LARGE_BLOCK = 1 << 23 };
-
-void *hewn_mesh_alloc_pages(size_t count, size_t size)
-{
-    unsigned char *block = hewn_alloc(count, size);
-#ifdef MADV_HUGEPAGE
-    size_t bytes = count * size, page = 4096;
-    if (block && bytes >= LARGE_BLOCK) {
-        size_t skip = (page - (uintptr_t)block % page) % page;
-        /* Advice: where it is not taken the block is as good as before. */
-        (void)madvise(block + skip, (bytes - skip) / page * page, MADV_HUGEPAGE);
-    }
-#endif
-    return block;
-}
+enum { CORNERS_A_PART = 1 << 14, SMALL_BUCKET = 16 };
 
 /* --- counting sort ------------------------------------------------------------------------------------------------ */
 
@@ -211,9 +196,9 @@ static void run_part(const mesh_source *source, uint32_t *any_corner, mesh_match
 hewn_result hewn_mesh_match(const mesh_source *source, uint32_t *any_corner, mesh_matching *out, hewn_error *error)
 {
     *out = (mesh_matching){.fault = HEWN_NONE};
-    out->ends = hewn_mesh_alloc_pages(source->vert_count, 2 * sizeof *out->ends);
-    out->entries = hewn_mesh_alloc_pages(source->corner_count, sizeof *out->entries);
-    out->halves = hewn_mesh_alloc_pages(source->corner_count, sizeof *out->halves);
+    out->ends = hewn_alloc(source->vert_count, 2 * sizeof *out->ends);
+    out->entries = hewn_alloc(source->corner_count, sizeof *out->entries);
+    out->halves = hewn_alloc(source->corner_count, sizeof *out->halves);
     if (!out->ends || !out->entries || !out->halves) {
         hewn_mesh_matching_free(out);
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory matching the edges of %u faces", source->face_count);

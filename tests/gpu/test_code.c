@@ -144,12 +144,12 @@ static void check_bits(state *state, const hewn_field *field, hewn_node root, co
         points[3 * i + 1] = rows[ROW * (i / 8) + 8];
         points[3 * i + 2] = rows[ROW * (i / 8) + 9];
     }
-    hewn_code *code = code_of(state->device, field, root);
+    hewn_code *code = code_with(state->device, field, root, HEWN_NUMBERS_IN_BUFFER);
     GPU_TEST_TRY(hewn_code_eval_points(state->device, code, points, COUNT, values, &error));
     GPU_TEST_TRY(hewn_code_eval_gradients(state->device, code, points, COUNT, gradients, &error));
     run_rows(state->device, code, rows, ROWS, signs);
     hewn_code_destroy(state->device, &code);
-    GPU_TEST_TRY(hewn_code_create_fixed(state->device, field, root, &code, &error));
+    code = code_with(state->device, field, root, HEWN_NUMBERS_IN_CODE);
     run_rows(state->device, code, rows, ROWS, fixed_signs);
     hewn_code_destroy(state->device, &code);
     assert_memory_equal(signs, fixed_signs, sizeof signs);
@@ -214,7 +214,7 @@ static float value_with(hewn_device *device, double radius, double shift)
     hewn_node ball = hewn_translate(field, hewn_sphere(field, radius), shift, 0, 0);
     hewn_node cut = hewn_smooth_union(field, ball, hewn_mul(field, hewn_y(field), hewn_constant(field, shift)),
                                       HEWN_BLEND_CUBIC, radius / 8);
-    hewn_code *code = code_of(device, field, cut);
+    hewn_code *code = code_with(device, field, cut, HEWN_NUMBERS_IN_BUFFER);
     const float point[3] = {0, 100, 0};
     float value;
     GPU_TEST_TRY(hewn_code_eval_points(device, code, point, 1, &value, &error));
@@ -265,8 +265,7 @@ static void check_values(state *state, const hewn_field *field, hewn_node root, 
         boxes[6 * (i / 3) + 3 + i % 3] = points[i] + 0.01f;
     }
     double begin = hewn_clock_now();
-    hewn_code *code;
-    GPU_TEST_TRY(hewn_code_create_fixed(state->device, field, root, &code, &error));
+    hewn_code *code = code_of(state->device, field, root);
     GPU_TEST_TRY(hewn_code_eval_points(state->device, code, points, COUNT, values, &error));
     double middle = hewn_clock_now();
     GPU_TEST_TRY(hewn_code_eval_boxes(state->device, code, boxes, COUNT, intervals, &error));
@@ -326,10 +325,11 @@ static void parameters_may_outgrow_uniforms(void **test_state)
     const float point[3] = {0.25f, 0.5f, 0.125f};
     const uint64_t range = state->device->max_uniform_range;
     float values[3];
-    hewn_code *codes[3] = {code_of(state->device, field, root)};
-    GPU_TEST_TRY(hewn_code_create_fixed(state->device, field, root, &codes[2], &error));
+    hewn_code *codes[3];
+    codes[0] = code_with(state->device, field, root, HEWN_NUMBERS_IN_BUFFER);
+    codes[2] = code_with(state->device, field, root, HEWN_NUMBERS_IN_CODE);
     state->device->max_uniform_range = 64;
-    codes[1] = code_of(state->device, field, root);
+    codes[1] = code_with(state->device, field, root, HEWN_NUMBERS_IN_BUFFER);
     assert_true(hewn_code_uniforms(codes[0])->size > 64 && hewn_code_uniforms(codes[1])->size == 16);
     for (int i = 0; i < 3; i++) {
         state->device->max_uniform_range = i == 1 ? 64 : range;

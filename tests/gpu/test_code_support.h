@@ -85,11 +85,16 @@ static inline hewn_field *code_one_op(hewn_op op, const double *parameters, hewn
     return field;
 }
 
-static inline hewn_code *code_of(hewn_device *device, const hewn_field *field, hewn_node root)
+static inline hewn_code *code_with(hewn_device *device, const hewn_field *field, hewn_node root, hewn_numbers numbers)
 {
     hewn_code *code;
-    GPU_TEST_TRY(hewn_code_create(device, field, root, &code, &error));
+    GPU_TEST_TRY(hewn_code_create_with(device, field, root, numbers, &code, &error));
     return code;
+}
+
+static inline hewn_code *code_of(hewn_device *device, const hewn_field *field, hewn_node root)
+{
+    return code_with(device, field, root, HEWN_NUMBERS_AUTO);
 }
 
 /* A graph of about `size` nodes whose operands are mostly recent, so that it is deep and shares. */

@@ -158,6 +158,19 @@ static builder cubes_with_wall(void)
     return soup;
 }
 
+/* Two closed sheets of the same corners would also be closed and have no volume; here each face has four neighbours. */
+static void assert_no_face_meets_another_twice(const hewn_mesh *mesh)
+{
+    for (uint32_t f = 0; f < hewn_mesh_face_count(mesh); f++) {
+        hewn_half h = hewn_face_half(mesh, (hewn_face){f});
+        for (int k = 0; k < 4; k++, h = hewn_half_next(mesh, h)) {
+            hewn_half next = hewn_half_next(mesh, h);
+            assert_int_not_equal(hewn_half_face(mesh, hewn_half_twin(h)).id,
+                                 hewn_half_face(mesh, hewn_half_twin(next)).id);
+        }
+    }
+}
+
 static void test_wall_between_cubes(void **state)
 {
     (void)state;
@@ -167,6 +180,7 @@ static void test_wall_between_cubes(void **state)
     assert_true(kept.certificate.volume == 2);
     assert_int_equal(kept.report.non_manifold_edges, 4);
     assert_int_equal(kept.report.duplicate_faces, 0);
+    assert_no_face_meets_another_twice(kept.mesh);
     free_repaired(&kept);
     repaired merged = take(cubes_with_wall(), &(hewn_repair_desc){.opposite = HEWN_OPPOSITE_CANCEL});
     assert_true(merged.certificate.closed);
