@@ -98,7 +98,7 @@ static hewn_result explain_fans(const hewn_mesh *mesh, hewn_error *error)
 static hewn_result fill_positions(const mesh_source *source, double *positions, hewn_error *error)
 {
     uint32_t bad = source->vert_count;
-#pragma omp parallel for schedule(static) reduction(min : bad)
+#pragma omp parallel for schedule(static) reduction(min : bad) if (source->vert_count >= HEWN_MESH_ALONE)
     for (uint32_t v = 0; v < source->vert_count; v++) {
         double *to = positions + 3 * (size_t)v;
         for (size_t i = 0; i < 3; i++)
@@ -192,7 +192,7 @@ static void fill_polygon(const mesh_source *source, mesh_matching *matching, hew
 
 static void fill_faces(const mesh_source *source, mesh_matching *matching, hewn_mesh *mesh)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (source->face_count >= HEWN_MESH_ALONE)
     for (uint32_t f = 0; f < source->face_count; f++) {
         if (source->first)
             fill_polygon(source, matching, mesh, f);
@@ -232,7 +232,7 @@ static void complete_heads(hewn_mesh *mesh)
 static bool rings_are_whole(const hewn_mesh *mesh)
 {
     uint64_t reached = 0;
-#pragma omp parallel for schedule(static) reduction(+ : reached)
+#pragma omp parallel for schedule(static) reduction(+ : reached) if (mesh->vert_bound >= HEWN_MESH_ALONE)
     for (uint32_t v = 0; v < mesh->vert_bound; v++) {
         uint32_t first = mesh->vert_half[v], h = first;
         if (first == HEWN_NONE)
@@ -247,7 +247,7 @@ static bool rings_are_whole(const hewn_mesh *mesh)
 
 static hewn_result link_verts(const mesh_matching *matching, hewn_mesh *mesh, hewn_error *error)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (mesh->vert_bound >= HEWN_MESH_ALONE)
     for (uint32_t v = 0; v < mesh->vert_bound; v++)
         if (mesh->vert_half[v] != HEWN_NONE)
             mesh->vert_half[v] = matching->halves[mesh->vert_half[v]];

@@ -10,6 +10,9 @@
 
 #include "mesh/mesh_data.h"
 
+/* Elements below which one thread does a loop alone: waking others costs more. */
+#define HEWN_MESH_ALONE 50000u
+
 enum { MESH_MOST_PARTS = 8 };
 
 typedef struct mesh_source {

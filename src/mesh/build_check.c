@@ -104,13 +104,13 @@ hewn_result hewn_mesh_check_faces(const mesh_source *source, hewn_error *error)
     HEWN_TRY(check_lengths(source, error));
     uint32_t bad = source->face_count;
     if (source->first) {
-#pragma omp parallel for schedule(static) reduction(min : bad)
+#pragma omp parallel for schedule(static) reduction(min : bad) if (source->face_count >= HEWN_MESH_ALONE)
         for (uint32_t f = 0; f < source->face_count; f++)
             if (polygon_is_bad(source, f))
                 bad = f < bad ? f : bad;
         HEWN_TRY(check_large_faces(source, bad, &bad, error));
     } else {
-#pragma omp parallel for schedule(static) reduction(min : bad)
+#pragma omp parallel for schedule(static) reduction(min : bad) if (source->face_count >= HEWN_MESH_ALONE)
         for (uint32_t f = 0; f < source->face_count; f++)
             if (triangle_is_bad(source->corners + 3 * (size_t)f, source->vert_count))
                 bad = f < bad ? f : bad;
