@@ -277,7 +277,8 @@ vec4 f_box(const vec4 a, const vec4 b, const vec4 c, const float p, const float 
 }
 
 //: rounded_box box
-vec4 f_rounded_box(const vec4 a, const vec4 b, const vec4 c, const float p, const float q, const float r, const float radius)
+vec4 f_rounded_box(const vec4 a, const vec4 b, const vec4 c, const float p, const float q, const float r,
+                   const float radius)
 {
     return vec4(f_box(a, b, c, p, q, r).xyz, f_rounded_box(a.w, b.w, c.w, p, q, r, radius));
 }
@@ -308,8 +309,8 @@ vec4 f_capsule(const vec4 a, const vec4 b, const vec4 c, const float radius, con
 }
 
 //: cone length
-vec4 f_cone(const vec4 a, const vec4 b, const vec4 c, const float bottom, const float top, const float half_height, const float u, const float v, const float slant,
-            const float mean)
+vec4 f_cone(const vec4 a, const vec4 b, const vec4 c, const float bottom, const float top, const float half_height,
+            const float u, const float v, const float slant, const float mean)
 {
     f_frustum f = f_around_frustum(f_length(a.w, c.w), b.w, bottom, top, half_height, u, v, slant, mean);
     vec3 around = f_pull(a, c), up = f_away(b);

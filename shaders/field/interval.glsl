@@ -1,10 +1,10 @@
-/* Operations on intervals: vec2 (lo, hi) in and out. A result contains every value that the point operation computes for
- * arguments in the operands, on any driver that keeps Vulkan's promises, and is [-inf, inf] where NaN is possible.
+/* Operations on intervals: vec2 (lo, hi) in and out. A result contains every value that the point operation computes
+ * for arguments in the operands, on any driver that keeps Vulkan's promises, and is [-inf, inf] where NaN is possible.
  *
  * Sums, differences and products are rounded correctly, in one mode a device; such rounding is monotone, as is taking
  * denormals for zero. So what is made of them alone needs no widening where it grows with its arguments: the ends have
- * the bits that values there have. What divides, takes roots or adds up polynomials is widened by the error of the value and by
- * that of the end. A unit, F_U, is the greatest distance of neighbouring floats over their size.
+ * the bits that values there have. What divides, takes roots or adds up polynomials is widened by the error of the
+ * value and by that of the end. A unit, F_U, is the greatest distance of neighbouring floats over their size.
  *
  * Operands are finite. Where the emitter cannot tell that they are, and that the result is, it calls f_guard. */
 //: core
@@ -163,7 +163,7 @@ bool f_is_reducible(const vec2 a)
 vec2 f_swing(const vec2 a, const vec2 e, const bool crest, const bool trough)
 {
     vec2 r = f_widen(e, 9.0);
-    bool low = r.x < -1.0, high = r.y > 1.0, far = !f_is_reducible(a);
+    bool low = r.x<-1.0, high = r.y> 1.0, far = !f_is_reducible(a);
     return vec2(f_pick(trough || low || far, -1.0, r.x), f_pick(crest || high || far, 1.0, r.y));
 }
 
@@ -194,14 +194,14 @@ precise vec2 f_tan(const vec2 a)
 //: asin
 vec2 f_asin(const vec2 a)
 {
-    bool low = a.x < -1.0, high = a.y > 1.0;
+    bool low = a.x<-1.0, high = a.y> 1.0;
     return f_whole_if(low || high, f_widen(vec2(f_asin(a.x), f_asin(a.y)), 9.0));
 }
 
 //: acos
 vec2 f_acos(const vec2 a)
 {
-    bool low = a.x < -1.0, high = a.y > 1.0;
+    bool low = a.x<-1.0, high = a.y> 1.0;
     return f_whole_if(low || high, f_not_negative(f_widen(vec2(f_acos(a.y), f_acos(a.x)), 9.0)));
 }
 
@@ -304,8 +304,8 @@ precise vec2 f_div(const vec2 a, const vec2 b)
 {
     precise vec4 e = a.xxyy / b.xyxy;
     vec2 r = f_widen(f_hull(f_ordered(e.x, e.y), f_ordered(e.z, e.w)), 6.0);
-    bool under = b.x < 1.17549435e-38, over = b.y > -1.17549435e-38;
-    bool zero = under && over, low = b.x < -8.5e37, high = b.y > 8.5e37;
+    bool under = b.x<1.17549435e-38, over = b.y> - 1.17549435e-38;
+    bool zero = under && over, low = b.x<-8.5e37, high = b.y> 8.5e37;
     return f_whole_if(zero || low || high, f_finite(r));
 }
 
@@ -314,7 +314,7 @@ precise vec2 f_div(const vec2 a, const float b)
     precise vec2 e = a / b;
     vec2 r = f_widen(mix(e, e.yx, bvec2(b < 0.0)), 6.0);
     float m = abs(b);
-    bool zero = m < 1.17549435e-38, far = m > 8.5e37;
+    bool zero = m<1.17549435e-38, far = m> 8.5e37;
     return f_whole_if(zero || far, f_finite(r));
 }
 
@@ -341,7 +341,8 @@ vec2 f_max(const vec2 a, const float b)
 }
 
 //: mod
-/* Where the whole part q of a/b is the same everywhere (with room to spare) it is a - q |b|, else anything from 0 to |b|. */
+/* Where the whole part q of a/b is the same everywhere (with room to spare) it is a - q |b|, else anything from 0 to
+ * |b|. */
 precise vec2 f_mod(const vec2 a, const vec2 b)
 {
     vec2 m = f_magnitude(b);
@@ -359,14 +360,14 @@ precise vec2 f_mod(const vec2 a, const vec2 b)
     precise float whole = a.y + a.y * (4.0 * F_U); /* of what is positive nothing is left that is larger */
     float most = f_pick(a.x >= 0.0 && whole < m.y, whole, m.y);
     vec2 r = vec2(f_pick(shift && rest.x > 0.0, rest.x, 0.0), f_pick(shift && rest.y < most, rest.y, most));
-    bool zero = m.x < 1.17549435e-38, far = m.y > 8.5e37;
+    bool zero = m.x<1.17549435e-38, far = m.y> 8.5e37;
     return f_whole_if(zero || far, r);
 }
 
 //: compare
 vec2 f_compare(const vec2 a, const vec2 b)
 {
-    bool less = a.y < b.x, more = a.x > b.y, not_less = a.x >= b.y, not_more = a.y <= b.x;
+    bool less = a.y<b.x, more = a.x> b.y, not_less = a.x >= b.y, not_more = a.y <= b.x;
     return vec2(f_pick(more, 1.0, f_pick(not_less, 0.0, -1.0)), f_pick(less, -1.0, f_pick(not_more, 0.0, 1.0)));
 }
 
@@ -410,7 +411,8 @@ precise vec2 f_affine(const vec2 a, const vec2 b, const float p, const float q, 
     return sum;
 }
 
-precise vec2 f_affine(const vec2 a, const vec2 b, const vec2 c, const float p, const float q, const float r, const float s)
+precise vec2 f_affine(const vec2 a, const vec2 b, const vec2 c, const float p, const float q, const float r,
+                      const float s)
 {
     precise vec2 sum = f_term(a, p) + f_term(b, q) + f_term(c, r) + s;
     return sum;
@@ -433,7 +435,8 @@ vec2 f_box(const vec2 a, const vec2 b, const vec2 c, const float p, const float 
 }
 
 //: rounded_box box
-precise vec2 f_rounded_box(const vec2 a, const vec2 b, const vec2 c, const float p, const float q, const float r, const float radius)
+precise vec2 f_rounded_box(const vec2 a, const vec2 b, const vec2 c, const float p, const float q, const float r,
+                           const float radius)
 {
     precise vec2 e = f_box(a, b, c, p, q, r) - radius;
     return e;
@@ -464,11 +467,12 @@ precise vec2 f_capsule(const vec2 a, const vec2 b, const vec2 c, const float rad
 }
 
 //: cone length
-/* The distance to a convex profile grows with r and is convex along y: its greatest value lies at an end, its least where
- * the plane of the wider end and either the slant or the plane of the other end are equally far, or as near to there
- * as the box comes. A computed distance errs by at most 20 units of the sum of all lengths, twice; that place by 10. */
-precise vec2 f_cone(const vec2 a, const vec2 b, const vec2 c, const float bottom, const float top, const float half_height, const float u, const float v, const float slant,
-                    const float mean)
+/* The distance to a convex profile grows with r and is convex along y: its greatest value lies at an end, its least
+ * where the plane of the wider end and either the slant or the plane of the other end are equally far, or as near to
+ * there as the box comes. A computed distance errs by at most 20 units of the sum of all lengths, twice; that place
+ * by 10. */
+precise vec2 f_cone(const vec2 a, const vec2 b, const vec2 c, const float bottom, const float top,
+                    const float half_height, const float u, const float v, const float slant, const float mean)
 {
     vec2 r = f_length(f_magnitude(a), f_magnitude(c));
     precise float down = (half_height + u * (r.x - mean)) / (1.0 + abs(v));
@@ -485,7 +489,8 @@ precise vec2 f_cone(const vec2 a, const vec2 b, const vec2 c, const float bottom
 }
 
 //: blend
-/* Blends grow with both operands. What they take away errs by some units of their size, and the last sum by one more. */
+/* Blends grow with both operands. What they take away errs by some units of their size, and the last sum by one more.
+ */
 precise vec2 f_blend_bounds(const vec2 e, const float size, const float units)
 {
     precise vec2 amount = vec2(size * (units * F_U) + F_TINY);

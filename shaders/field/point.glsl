@@ -1,7 +1,9 @@
 /* Operations on values: float in, float out. The other flavours take their values from here, so that every kernel
  * computes the same bits. A block runs from one marker (slashes, colon, its name, the blocks it needs) to the next, and
- * only the blocks that a field uses are compiled. Errors are tabled in docs/evaluation.md. */
+ * only the blocks that a field uses are compiled. Parameters are const, which passes values instead of variables.
+ * Errors are tabled in docs/evaluation.md. */
 //: core
+/* True; see listing.c for what it keeps apart. */
 layout(constant_id = 2000) const bool f_always = true;
 #define F_INF uintBitsToFloat(0x7f800000u)
 #define F_NAN uintBitsToFloat(0x7fc00000u)
@@ -73,9 +75,9 @@ precise float f_square(const float a)
 }
 
 //: wave
-/* x less the nearest multiple `quarter` of pi/2, for Cody and Waite's reduction with pi/2 in five pieces. The first four
- * have 11 bits each, so that their products are exact while quarter has 13 bits. Past that the rest loses its meaning
- * and is only kept small. */
+/* x less the nearest multiple `quarter` of pi/2, for Cody and Waite's reduction with pi/2 in five pieces. The first
+ * four have 11 bits each, so that their products are exact while quarter has 13 bits. Past that the rest loses its
+ * meaning and is only kept small. */
 precise float f_reduce(const float x, out float quarter)
 {
     precise float k = floor(x * 0.636619747 + 0.5);
@@ -156,8 +158,7 @@ precise float f_root(const float z)
 /* asin of s in [-1/2, 1/2] from s and s^2 */
 precise float f_arcsine_near_0(const float s, const float z)
 {
-    precise float p =
-        (((0.0421664417 * z + 0.0241807681) * z + 0.0454697721) * z + 0.0749530643) * z + 0.166667521;
+    precise float p = (((0.0421664417 * z + 0.0241807681) * z + 0.0454697721) * z + 0.0749530643) * z + 0.166667521;
     precise float result = s + s * (z * p);
     return result;
 }
@@ -395,7 +396,8 @@ precise float f_affine(const float a, const float b, const float p, const float 
     return sum;
 }
 
-precise float f_affine(const float a, const float b, const float c, const float p, const float q, const float r, const float s)
+precise float f_affine(const float a, const float b, const float c, const float p, const float q, const float r,
+                       const float s)
 {
     precise float sum = p * a + q * b + r * c + s;
     return sum;
@@ -419,7 +421,8 @@ precise float f_box(const float a, const float b, const float c, const float p, 
 }
 
 //: rounded_box box
-precise float f_rounded_box(const float a, const float b, const float c, const float p, const float q, const float r, const float radius)
+precise float f_rounded_box(const float a, const float b, const float c, const float p, const float q, const float r,
+                            const float radius)
 {
     precise float d = f_box(a, b, c, p, q, r) - radius;
     return d;
@@ -458,14 +461,15 @@ precise float f_capsule(const float a, const float b, const float c, const float
 
 //: cone length
 /* Where a point of the half-plane (r, y) lies against the frustum's profile: `cap` and `side` are the distances to the
- * lines of the nearer end and of the slant, `over` and `along` how far it is past those edges' ends (0 where beside them).
- * The unit normal of the slant is (u, v), `slant` half its length, `mean` its radius at y = 0. */
+ * lines of the nearer end and of the slant, `over` and `along` how far it is past those edges' ends (0 where beside
+ * them). The unit normal of the slant is (u, v), `slant` half its length, `mean` its radius at y = 0. */
 struct f_frustum {
     float cap, side, over, along, turn;
 };
 
-precise f_frustum f_around_frustum(const float r, const float y, const float bottom, const float top, const float half_height, const float u, const float v,
-                                   const float slant, const float mean)
+precise f_frustum f_around_frustum(const float r, const float y, const float bottom, const float top,
+                                   const float half_height, const float u, const float v, const float slant,
+                                   const float mean)
 {
     precise f_frustum f;
     precise float off = r - mean;
@@ -487,8 +491,8 @@ precise float f_frustum_distance(const f_frustum f)
     return f_pick(f_is_nan(f.cap, f.side), F_NAN, d);
 }
 
-precise float f_cone(const float a, const float b, const float c, const float bottom, const float top, const float half_height, const float u, const float v,
-                     const float slant, const float mean)
+precise float f_cone(const float a, const float b, const float c, const float bottom, const float top,
+                     const float half_height, const float u, const float v, const float slant, const float mean)
 {
     return f_frustum_distance(f_around_frustum(f_length(a, c), b, bottom, top, half_height, u, v, slant, mean));
 }

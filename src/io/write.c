@@ -116,7 +116,8 @@ hewn_result hewn_mesh_write(const hewn_triangles *triangles, const char *path, c
     if (!(metres > 0 && isfinite(metres)))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%g metres a unit make no sense", metres);
     HEWN_TRY(check_size(triangles, writer, error));
-    hewn_mesh_writing job = {.mesh = triangles, .metres_per_unit = metres, .up = wanted->up, .progress = wanted->progress};
+    hewn_mesh_writing job = {
+        .mesh = triangles, .metres_per_unit = metres, .up = wanted->up, .progress = wanted->progress};
     char *name = object_name(wanted->name, path);
     job.name = name;
     hewn_result result =
