@@ -68,6 +68,7 @@ static uint32_t *shuffled(uint64_t count, uint64_t seed)
     uint32_t *order = malloc(count * sizeof *order);
     for (uint64_t i = 0; order && i < count; i++) {
         uint64_t j = random_bits(&seed) % (i + 1);
+        order[i] = (uint32_t)i;
         order[i] = order[j];
         order[j] = (uint32_t)i;
     }

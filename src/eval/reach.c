@@ -15,6 +15,8 @@ typedef struct operands {
     bool positive;  /* all of them */
 } operands;
 
+static const hewn_code_step no_step; /* stands where an operation has no such operand */
+
 static operands look_at(const hewn_listing *listing, const hewn_code_step *step)
 {
     operands in = {.sure = true, .positive = true};
@@ -25,8 +27,8 @@ static operands look_at(const hewn_listing *listing, const hewn_code_step *step)
         in.sure = in.sure && one->sure;
         in.positive = in.positive && one->positive;
     }
-    in.a = step->in_count > 0 ? &listing->steps[step->in[0]] : NULL;
-    in.b = step->in_count > 1 ? &listing->steps[step->in[1]] : NULL;
+    in.a = step->in_count > 0 ? &listing->steps[step->in[0]] : &no_step;
+    in.b = step->in_count > 1 ? &listing->steps[step->in[1]] : &no_step;
     return in;
 }
 
