@@ -240,8 +240,11 @@ static void test_public_headers_keep_their_order(void **state)
         if (!ends_with(entry->d_name, ".h"))
             continue;
         const char *name = room_of_header(entry->d_name);
-        if (name == NULL)
-            fail_msg("include/hewn/%s is not in the table of headers", entry->d_name);
+        if (name == NULL) {
+            print_error("include/hewn/%s is not in the table of headers\n", entry->d_name);
+            wrong++;
+            continue;
+        }
         const room *owner = strcmp(name, "open") == 0   ? &lowest
                             : strcmp(name, "hewn") == 0 ? &outside
                                                         : find_room(name);
