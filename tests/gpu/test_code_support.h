@@ -67,9 +67,9 @@ static inline void code_parameters(hewn_op op, uint64_t *state, double *p)
 static inline hewn_node code_node(hewn_field *field, hewn_op op, const uint32_t *operands, const double *parameters)
 {
     hewn_node_data data = {.op = op, .operand = {0xFFFFFFFFu, 0xFFFFFFFFu, 0xFFFFFFFFu}};
-    for (int i = 0; i < HEWN_MAX_OPERANDS && i < hewn_op_infos[op].operands; i++)
+    for (int i = 0; i < hewn_op_infos[op].operands; i++)
         data.operand[i] = operands[i];
-    for (int i = 0; i < HEWN_MAX_PARAMETERS && i < hewn_op_infos[op].parameters; i++)
+    for (int i = 0; i < hewn_op_infos[op].parameters; i++)
         data.parameter[i] = parameters[i];
     return hewn_field_add_node(field, &data);
 }
