@@ -40,7 +40,10 @@ static int anonymous_file(void)
 static int open_terminal(int *controller)
 {
     *controller = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-    assert_true(*controller >= 0);
+    if (*controller < 0) {
+        print_message("no pseudo-terminals here (is /dev/pts mounted?)\n");
+        skip();
+    }
     assert_int_equal(grantpt(*controller), 0);
     assert_int_equal(unlockpt(*controller), 0);
     int terminal = open(ptsname(*controller), O_RDWR | O_NOCTTY | O_CLOEXEC);
