@@ -7,11 +7,6 @@ layout(push_constant, scalar) uniform Push
     hewn_cull_push push;
 };
 
-float sample_x(uint i)
-{
-    return sample_coordinate(push.grid, 0u, i);
-}
-
 /* What the block holds: 0 where it may hold surface, else a stand-in. */
 uint block_state(uvec3 block)
 {

@@ -13,11 +13,6 @@ const float NEAREST = 1.25 / 4096.0;
 const float NEAR_ENOUGH = 1.0e-5;
 const uint MOST_TRIALS = 24u;
 
-float sample_x(uint i)
-{
-    return sample_coordinate(push.grid, 0u, i);
-}
-
 float value_along(vec3 start, uint axis, float side, float t)
 {
     precise vec3 at = start;
