@@ -92,7 +92,7 @@ static void test_moebius_file(void **state)
     (void)state;
     char buffer[4096];
     const char *folder = data_folder(buffer);
-    builder soup;
+    builder soup = {0};
     if (!folder || !read_file(folder, "mesh-open/moebius.obj", &soup))
         skip();
     repaired result = take(soup, &(hewn_repair_desc){.weld = true});
