@@ -9,10 +9,10 @@
 #include "dense.h"
 #include "flying_edges.h"
 #include "hewn/hewn.h"
+#include "samples.h"
 
 #include "base/clock.h"
 
-#define MOST_RUNS 99
 #define THREADS 2
 
 typedef struct contest {
@@ -43,20 +43,6 @@ static void stop_on(hewn_result result, const hewn_error *error)
         return;
     fprintf(stderr, "bench: %s: %s\n", error->file, error->message);
     exit(1);
-}
-
-static int by_value(const void *a, const void *b)
-{
-    double left = *(const double *)a, right = *(const double *)b;
-    return (left > right) - (left < right);
-}
-
-static double median(const double *values, int count)
-{
-    double sorted[MOST_RUNS];
-    memcpy(sorted, values, (size_t)count * sizeof *sorted);
-    qsort(sorted, (size_t)count, sizeof *sorted, by_value);
-    return count % 2 ? sorted[count / 2] : 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);
 }
 
 static void run_hewn(hewn_extractor *extractor, const hewn_box *bounds, uint32_t resolution, double *seconds,
@@ -125,14 +111,14 @@ static double paired_ratio(const outcome *result, int runs)
     double ratios[MOST_RUNS];
     for (int i = 0; i < runs; i++)
         ratios[i] = (result->sampling[i] + result->flying_edges[i]) / result->hewn[i];
-    return median(ratios, runs);
+    return bench_median(ratios, runs);
 }
 
 static void print_outcome(FILE *json, const contest *entry, uint32_t resolution, const outcome *result, int runs,
                           bool first)
 {
-    double ours = median(result->hewn, runs), sampling = median(result->sampling, runs);
-    double meshing = median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
+    double ours = bench_median(result->hewn, runs), sampling = bench_median(result->sampling, runs);
+    double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
     printf("%-8s %5u  %8.3f  %8.3f + %-7.3f  %5.2fx   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, read back "
            "%.3f\n",
            entry->name, resolution, ours, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles,

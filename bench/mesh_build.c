@@ -17,10 +17,10 @@
 
 #include "hewn/mesh.h"
 #include "mesh_peers.h"
+#include "samples.h"
+#include "torus.h"
 
 #include "base/clock.h"
-
-#define MOST_RUNS 99
 
 static void *hewn_build(const peer_input *input)
 {
@@ -97,41 +97,13 @@ static void shuffle(double *positions, uint32_t *indices, uint64_t verts, uint64
 
 static peer_input make_torus(uint64_t triangles, bool in_order)
 {
-    uint32_t m = (uint32_t)sqrt((double)triangles / 2), n = (uint32_t)(triangles / 2 / m);
-    uint64_t verts = (uint64_t)n * m;
-    double *positions = malloc(verts * 3 * sizeof *positions);
-    uint32_t *indices = malloc(verts * 6 * sizeof *indices);
-    if (!positions || !indices)
-        exit(1);
-    for (uint32_t i = 0; i < n; i++)
-        for (uint32_t j = 0; j < m; j++) {
-            double u = 2 * M_PI * i / n, v = 2 * M_PI * j / m, radius = 1 + 0.3 * cos(v);
-            uint32_t a = i * m + j, b = (i + 1) % n * m + j, c = (i + 1) % n * m + (j + 1) % m, d = i * m + (j + 1) % m;
-            const double position[3] = {radius * cos(u), radius * sin(u), 0.3 * sin(v)};
-            const uint32_t corners[6] = {a, b, c, a, c, d};
-            memcpy(positions + 3 * (size_t)a, position, sizeof position);
-            memcpy(indices + 6 * (size_t)a, corners, sizeof corners);
-        }
+    peer_input torus = bench_torus(triangles);
     if (!in_order)
-        shuffle(positions, indices, verts, 2 * verts);
-    return (peer_input){verts, 2 * verts, positions, indices};
+        shuffle((double *)torus.positions, (uint32_t *)torus.indices, torus.vertex_count, torus.triangle_count);
+    return torus;
 }
 
 /* --- measuring ---------------------------------------------------------------------------------------------------- */
-
-static int by_value(const void *a, const void *b)
-{
-    double left = *(const double *)a, right = *(const double *)b;
-    return (left > right) - (left < right);
-}
-
-static double median(const double *values, int count)
-{
-    double sorted[MOST_RUNS];
-    memcpy(sorted, values, (size_t)count * sizeof *sorted);
-    qsort(sorted, (size_t)count, sizeof *sorted, by_value);
-    return count % 2 ? sorted[count / 2] : 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);
-}
 
 static size_t heap_bytes(void)
 {
@@ -157,14 +129,14 @@ static void run_once(contender *entry, const peer_input *input, int run)
 
 static void report(const peer_input *input, const char *order, const char *only, int runs, FILE *json)
 {
-    double ours = median(contenders[0].seconds, runs);
+    double ours = bench_median(contenders[0].seconds, runs);
     printf("%llu triangles in %s order, %d threads, medians of %d runs in turn\n%-10s %9s %9s %10s %9s\n",
            (unsigned long long)input->triangle_count, order, omp_get_max_threads(), runs, "", "seconds", "of CPU",
            "MiB held", "to Hewn's");
     for (int c = 0; c < CONTENDERS; c++) {
         if (only && strcmp(only, contenders[c].name) != 0)
             continue;
-        double seconds = median(contenders[c].seconds, runs), cpu = median(contenders[c].cpu_seconds, runs);
+        double seconds = bench_median(contenders[c].seconds, runs), cpu = bench_median(contenders[c].cpu_seconds, runs);
         printf("%-10s %9.3f %9.3f %10.1f %8.2fx\n", contenders[c].name, seconds, cpu,
                (double)contenders[c].bytes / 0x1p20, only ? 1 : seconds / ours);
         if (json)

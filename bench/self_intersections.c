@@ -112,7 +112,7 @@ int main(int count, char **arguments)
     for (int k = first; k < count; k++) {
         hewn_triangles mesh;
         hewn_error error = {0};
-        if (hewn_mesh_read(arguments[k], &mesh, &error) != HEWN_OK)
+        if (hewn_triangles_read(arguments[k], &mesh, &error) != HEWN_OK)
             stop(error.message);
         measure(arguments[k], &mesh, runs);
         hewn_triangles_destroy(&mesh);

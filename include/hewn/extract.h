@@ -47,6 +47,14 @@ typedef struct hewn_extract_stats {
  * device does, which must outlive it. */
 HEWN_API hewn_result hewn_extractor_create(hewn_device *device, const hewn_field *field, hewn_node root,
                                            hewn_extractor **out, hewn_error *error);
+
+/* Takes a field that differs from the extractor's in its numbers only (sizes, places, constants), and compiles nothing:
+ * for programs in which somebody turns a knob. `*taken` tells whether it could. Where it is false the extractor is as
+ * it was, and the field needs another one; that is so where the expression is another one (also where a factor became
+ * 0 or 1, or ceased to be), or where it has so many numbers that the device has them in the code. Meshes made before
+ * keep what they are. HEWN_OUT_OF_MEMORY. */
+HEWN_API hewn_result hewn_extractor_renumber(hewn_extractor *extractor, const hewn_field *field, hewn_node root,
+                                             bool *taken, hewn_error *error);
 HEWN_API void hewn_extractor_destroy(hewn_extractor **extractor);
 
 /* Meshes the field: f < 0 is inside, everything else (0 and NaN too) outside. The triangles may live in memory of the

@@ -6,13 +6,16 @@
 #include "hewn/check.h"
 #include "hewn/device.h"
 #include "hewn/extract.h"
+#include "hewn/file_job.h"
 #include "hewn/field.h"
 #include "hewn/io.h"
 #include "hewn/job.h"
 #include "hewn/mesh.h"
 #include "hewn/mesh_views.h"
+#include "hewn/model.h"
 #include "hewn/repair.h"
 #include "hewn/scene.h"
 #include "hewn/triangles.h"
+#include "hewn/units.h"
 
 #endif

@@ -1,9 +1,8 @@
-/* Mesh files in and out: GLB, OBJ, PLY and STL. */
+/* Mesh files in and out. */
 #ifndef HEWN_IO_H
 #define HEWN_IO_H
 
-#include "hewn/scene.h"
-#include "hewn/triangles.h"
+#include "hewn/model.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -11,34 +10,63 @@ extern "C" {
 
 typedef enum hewn_mesh_format {
     HEWN_MESH_UNKNOWN,
-    HEWN_MESH_GLB, /* metres, +Y up, float; converted from the scene's units and axes */
-    HEWN_MESH_OBJ, /* text, scene coordinates */
-    HEWN_MESH_PLY, /* binary little-endian, scene coordinates */
-    HEWN_MESH_STL  /* binary, scene coordinates, no shared vertices */
+    HEWN_MESH_GLB,  /* triangles, float, always metres and +Y up */
+    HEWN_MESH_GLTF, /* the same as text; read only */
+    HEWN_MESH_OBJ,  /* text; polygons, double */
+    HEWN_MESH_PLY,  /* written binary little-endian; polygons, float where that holds every position, else double */
+    HEWN_MESH_STL,  /* written binary; triangles, float, no shared vertices */
+    HEWN_MESH_OFF,  /* text; polygons, double */
+    HEWN_MESH_3MF   /* triangles, with a unit, always +Z up; written only */
 } hewn_mesh_format;
 
-/* The format that a file's extension names (any case), or HEWN_MESH_UNKNOWN. */
+/* The format that a file's extension names (any case; one ".gz" after it is passed over), or HEWN_MESH_UNKNOWN. */
 HEWN_API hewn_mesh_format hewn_mesh_format_of(const char *path_or_extension);
 
-typedef struct hewn_mesh_write_desc {
+/* Its extension in lower case, without a dot; NULL for HEWN_MESH_UNKNOWN. */
+HEWN_API const char *hewn_mesh_format_name(hewn_mesh_format format);
+
+/* Whether hewn_model_write() in this format writes a channel of a model, all components of it. Numbers may be rounded
+ * to what the format has, and values of vertices and corners may lose their names. */
+HEWN_API bool hewn_mesh_format_keeps(hewn_mesh_format format, const hewn_model *model, const hewn_channel *channel);
+
+typedef struct hewn_read_desc {
+    hewn_mesh_format format;       /* HEWN_MESH_UNKNOWN: from the path; needed for "-", standard input */
+    uint64_t memory_limit;         /* bytes that a compressed file may grow to; 0 is 16 GiB */
+    const hewn_progress *progress; /* or NULL; the stage is "load" */
+} hewn_read_desc;
+
+/* Reads a mesh file, compressed with gzip or not, as it is: polygons uncut, vertices in the file's order, attributes,
+ * double precision. Vertices that a format cannot share (STL, glTF's seams) are shared where their positions are equal.
+ * `desc` may be NULL. HEWN_INVALID_ARGUMENT for an unknown extension; HEWN_IO; HEWN_BAD_INPUT says where and why;
+ * HEWN_LIMIT for more than indices can name; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. Memory stays in proportion to the
+ * file. */
+HEWN_API hewn_result hewn_model_read(const char *path, const hewn_read_desc *desc, hewn_model *out, hewn_error *error);
+
+/* The same, cut into float triangles. */
+HEWN_API hewn_result hewn_triangles_read(const char *path, hewn_triangles *out, hewn_error *error);
+
+typedef struct hewn_write_desc {
     hewn_mesh_format format; /* HEWN_MESH_UNKNOWN: from the path */
     const char *name;        /* of the object; NULL: the file's name without its extension */
-    double metres_per_unit;  /* 0 is 1 */
+    /* Of the positions; what a model knows itself goes before them. Without a unit triangle buffers are taken to be in
+     * metres. The file of a model of unknown unit says nothing (GLB takes metres, 3MF millimetres), nor does it of axes
+     * where the model knows none and no unit is given. */
+    const hewn_unit *unit;
     hewn_axis up;
-    const hewn_progress *progress; /* or NULL */
-} hewn_mesh_write_desc;
+    const hewn_progress *progress; /* or NULL; the stage is "write" */
+} hewn_write_desc;
 
-/* Writes a mesh under a temporary name and renames it over `path` ("-" is standard output, not for GLB). Same bytes for
- * the same input. HEWN_LIMIT where the format cannot hold it, before anything is written; HEWN_BAD_INPUT for an
- * index out of range or a number that is not finite; HEWN_IO; HEWN_CANCELLED. `desc` may be NULL; the stage is "write".
- */
-HEWN_API hewn_result hewn_mesh_write(const hewn_triangles *triangles, const char *path,
-                                     const hewn_mesh_write_desc *desc, hewn_error *error);
+/* Writes a model under a temporary name and renames it over `path` ("-" is standard output, not for GLB and 3MF). Same
+ * bytes for the same input. What the format cannot hold is left out, and polygons are cut where it has triangles only.
+ * `desc` may be NULL. HEWN_LIMIT where the format cannot hold that many or that far, before anything is written;
+ * HEWN_BAD_INPUT for an index out of range or a number that is not finite; HEWN_IO; HEWN_CANCELLED;
+ * HEWN_OUT_OF_MEMORY. */
+HEWN_API hewn_result hewn_model_write(const hewn_model *model, const char *path, const hewn_write_desc *desc,
+                                      hewn_error *error);
 
-/* Reads a mesh file by its extension, those above or .gltf, into triangles: polygons are cut into fans, STL's equal
- * positions are welded, glTF's nodes are placed and the result stays in metres and +Y up. Normals are kept where each
- * vertex has exactly one. HEWN_BAD_INPUT says where and why; memory stays in proportion to the file. */
-HEWN_API hewn_result hewn_mesh_read(const char *path, hewn_triangles *out, hewn_error *error);
+/* The same for triangle buffers, without a copy of them. */
+HEWN_API hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *path,
+                                          const hewn_write_desc *desc, hewn_error *error);
 
 #ifdef __cplusplus
 }

@@ -15,6 +15,13 @@ extern "C" {
 /* Cells on the longest side where neither a resolution nor a cell is given. */
 #define HEWN_DEFAULT_RESOLUTION 128u
 
+/* What a job leaves for the next one: the open device and the compiled field. Where a scene comes again with other
+ * numbers in the same expressions, the job compiles nothing (see hewn_extractor_renumber()). Serves one job at a time.
+ */
+typedef struct hewn_mesh_kept hewn_mesh_kept;
+HEWN_API hewn_result hewn_mesh_kept_create(hewn_mesh_kept **out, hewn_error *error);
+HEWN_API void hewn_mesh_kept_destroy(hewn_mesh_kept **kept);
+
 /* What to mesh, how, and where to. Zero everywhere but `scene` and `output` is a sensible default. */
 typedef struct hewn_mesh_job_desc {
     hewn_scene_desc scene;
@@ -31,6 +38,7 @@ typedef struct hewn_mesh_job_desc {
     uint32_t threads;   /* of this job, on the host and in a driver that runs on the host; 0: what they choose */
     double began;       /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
     const hewn_progress *progress; /* or NULL; its stages have the names of the report's */
+    hewn_mesh_kept *kept;          /* or NULL: nothing is kept. Its device stays the one that the first job asked for */
 } hewn_mesh_job_desc;
 
 /* A stage of a job, in seconds since the job began. Stages may overlap. */
@@ -91,11 +99,6 @@ typedef struct hewn_report {
  * `threads` other than 0 sets OpenMP's number of threads for the calling thread and LP_NUM_THREADS in the environment
  * before the device opens, so it must not run beside threads that read or change the environment. */
 HEWN_API hewn_result hewn_mesh_scene(const hewn_mesh_job_desc *desc, hewn_report *out, hewn_error *error);
-
-/* Reads a mesh file and certifies it. The report has no output, device or extraction, and its residual is NaN.
- * HEWN_BAD_INPUT for a file that cannot be read or used, HEWN_CANCELLED, HEWN_OUT_OF_MEMORY. `progress` may be NULL. */
-HEWN_API hewn_result hewn_mesh_examine(const char *path, const hewn_progress *progress, hewn_report *out,
-                                       hewn_error *error);
 
 /* Writes a report as JSON to a file, under a temporary name that success renames ("-": standard output).
  * HEWN_IO, HEWN_OUT_OF_MEMORY. */

@@ -78,9 +78,10 @@ HEWN_API hewn_result hewn_mesh_from_polygons(const hewn_polygons *polygons, hewn
  * where there are any). The triangles stay the caller's. */
 HEWN_API hewn_result hewn_mesh_from_triangles(const hewn_triangles *triangles, hewn_mesh **out, hewn_error *error);
 
-/* Back to indexed triangles of floats, live elements in order; polygons are triangulated as hewn_mesh_triangulate()
- * would, and a vertex attribute "normal" (3 FLOAT or DOUBLE) becomes the normals. `*out` is the caller's. HEWN_LIMIT
- * for a position that a float cannot hold, HEWN_INVALID_ARGUMENT where a polygon cannot be cut, HEWN_OUT_OF_MEMORY. */
+/* Back to indexed triangles of floats, live elements in order, those of a face together; polygons are cut as
+ * hewn_mesh_triangulate() would, and along an edge that exists already where there is no other way. A vertex attribute
+ * "normal" (3 FLOAT or DOUBLE) becomes the normals. `*out` is the caller's. HEWN_LIMIT for a position that a float
+ * cannot hold, HEWN_OUT_OF_MEMORY. */
 HEWN_API hewn_result hewn_mesh_to_triangles(const hewn_mesh *mesh, hewn_triangles *out, hewn_error *error);
 
 /* --- sizes and walking -------------------------------------------------------------------------------------------- */
@@ -165,6 +166,9 @@ typedef enum hewn_scalar {
     HEWN_SCALAR_INT32   /* never blended: labels; a new element takes that of the nearest old one */
 } hewn_scalar;
 
+/* Bytes of one scalar; 0 for a value that is none. */
+HEWN_API size_t hewn_scalar_size(hewn_scalar scalar);
+
 /* What an attribute is. Names that readers, writers and algorithms know: "normal" (3, unit length: normalised again
  * after blending), "uv" (2, origin at the lower left), "color" (3 or 4), "label" (1 INT32). Others are the user's own.
  */
@@ -183,6 +187,15 @@ HEWN_API void hewn_mesh_remove_attribute(hewn_mesh *mesh, uint32_t attribute); /
 HEWN_API uint32_t hewn_mesh_attribute_count(const hewn_mesh *mesh);
 HEWN_API const hewn_attribute_info *hewn_mesh_attribute(const hewn_mesh *mesh, uint32_t attribute);
 HEWN_API bool hewn_mesh_find_attribute(const hewn_mesh *mesh, hewn_domain domain, const char *name, uint32_t *out);
+
+/* Names of an INT32 attribute's values: value i is called names[i], other values have no name. They are copied, in
+ * place of those that were there. HEWN_INVALID_ARGUMENT for another attribute or a missing name; HEWN_OUT_OF_MEMORY. */
+HEWN_API hewn_result hewn_mesh_name_values(hewn_mesh *mesh, uint32_t attribute, const char *const *names,
+                                           uint32_t count, hewn_error *error);
+
+/* How many names there are, and that of a value; NULL where it has none. */
+HEWN_API uint32_t hewn_mesh_value_name_count(const hewn_mesh *mesh, uint32_t attribute);
+HEWN_API const char *hewn_mesh_value_name(const hewn_mesh *mesh, uint32_t attribute, int32_t value);
 
 /* The values of one element (`components` scalars): its id is a vert's, a half's or a face's. Valid until elements or
  * attributes are added or removed. NULL for an attribute or element that is not there. */
@@ -246,8 +259,9 @@ HEWN_API hewn_result hewn_mesh_triangulate(hewn_mesh *mesh, hewn_error *error);
 HEWN_API hewn_result hewn_mesh_compact(hewn_mesh *mesh, hewn_error *error);
 
 /* Adds a copy of `other`, holes included: its element i becomes i + the bound before. Attributes are joined by domain
- * and name; where only one mesh has one, it is zero in the other's part. HEWN_INVALID_ARGUMENT where two of one name
- * differ in scalar or components. `other` may be `mesh`. */
+ * and name; where only one mesh has one, it is zero in the other's part. Values that have names in `other` become those
+ * that are called so here, new names are added. HEWN_INVALID_ARGUMENT where two attributes of one name differ in scalar
+ * or components. `other` may be `mesh`. */
 HEWN_API hewn_result hewn_mesh_append(hewn_mesh *mesh, const hewn_mesh *other, hewn_error *error);
 
 /* Positions by a row-major 3 x 4 matrix, attributes "normal" by its inverse transpose; a mirroring matrix also reverses

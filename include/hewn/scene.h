@@ -4,6 +4,7 @@
 #define HEWN_SCENE_H
 
 #include "hewn/field.h"
+#include "hewn/units.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -16,8 +17,6 @@ typedef enum hewn_scene_format {
     HEWN_SCENE_LUA,
     HEWN_SCENE_VM
 } hewn_scene_format;
-
-typedef enum hewn_axis { HEWN_AXIS_PLUS_Y = 0, HEWN_AXIS_PLUS_Z, HEWN_AXIS_PLUS_X } hewn_axis;
 
 /* One `-D name=value`. */
 typedef struct hewn_scene_setting {
@@ -55,8 +54,8 @@ HEWN_API const hewn_field *hewn_scene_field(const hewn_scene *scene); /* its roo
 HEWN_API size_t hewn_scene_parameter_count(const hewn_scene *scene);
 HEWN_API const hewn_scene_parameter *hewn_scene_parameter_at(const hewn_scene *scene, size_t index);
 HEWN_API bool hewn_scene_bounds(const hewn_scene *scene, hewn_box *out); /* false where the scene gives none */
-HEWN_API double hewn_scene_metres_per_unit(const hewn_scene *scene);     /* 1 by default */
-HEWN_API const char *hewn_scene_units(const hewn_scene *scene);          /* "m" by default */
+HEWN_API const hewn_unit *hewn_scene_unit(const hewn_scene *scene);      /* metres by default */
+HEWN_API double hewn_scene_metres_per_unit(const hewn_scene *scene);     /* the unit's length */
 HEWN_API hewn_axis hewn_scene_up(const hewn_scene *scene);
 HEWN_API size_t hewn_scene_file_count(const hewn_scene *scene); /* the scene and every file it imported */
 HEWN_API const char *hewn_scene_file(const hewn_scene *scene, size_t index);

@@ -2,270 +2,270 @@
  * come from the point operations and have their bits. Where there is no derivative it is that of one side (at ties the
  * first operand's), or zero. */
 //: core
-vec3 f_away(const vec4 a)
+precise vec3 f_away(const vec4 a)
 {
     return mix(a.xyz, -a.xyz, bvec3(a.w < 0.0));
 }
 
 /* 1/a, and 0 for 0: the slope of a length at its centre. */
-float f_inverse(const float a)
+precise float f_inverse(const float a)
 {
     return f_pick(a > 0.0, 1.0 / a, 0.0);
 }
 
-vec4 f_choose(const bool condition, const vec4 yes, const vec4 no)
+precise vec4 f_choose(const bool condition, const vec4 yes, const vec4 no)
 {
     return mix(no, yes, bvec4(condition));
 }
 
 //: neg
-vec4 f_neg(const vec4 a)
+precise vec4 f_neg(const vec4 a)
 {
     return -a;
 }
 
 //: abs
-vec4 f_abs(const vec4 a)
+precise vec4 f_abs(const vec4 a)
 {
     return vec4(f_away(a), abs(a.w));
 }
 
 //: sqrt
-vec4 f_sqrt(const vec4 a)
+precise vec4 f_sqrt(const vec4 a)
 {
     float r = f_sqrt(a.w);
     return vec4(a.xyz * (0.5 * f_inverse(r)), r);
 }
 
 //: square
-vec4 f_square(const vec4 a)
+precise vec4 f_square(const vec4 a)
 {
     return vec4(a.xyz * (2.0 * a.w), f_square(a.w));
 }
 
 //: sin cos
-vec4 f_sin(const vec4 a)
+precise vec4 f_sin(const vec4 a)
 {
     return vec4(a.xyz * f_cos(a.w), f_sin(a.w));
 }
 
 //: cos sin
-vec4 f_cos(const vec4 a)
+precise vec4 f_cos(const vec4 a)
 {
     return vec4(a.xyz * -f_sin(a.w), f_cos(a.w));
 }
 
 //: tan
-vec4 f_tan(const vec4 a)
+precise vec4 f_tan(const vec4 a)
 {
     float t = f_tan(a.w);
     return vec4(a.xyz * (1.0 + t * t), t);
 }
 
 //: asin
-vec4 f_asin(const vec4 a)
+precise vec4 f_asin(const vec4 a)
 {
     return vec4(a.xyz * f_inverse(sqrt((1.0 - a.w) * (1.0 + a.w))), f_asin(a.w));
 }
 
 //: acos
-vec4 f_acos(const vec4 a)
+precise vec4 f_acos(const vec4 a)
 {
     return vec4(a.xyz * -f_inverse(sqrt((1.0 - a.w) * (1.0 + a.w))), f_acos(a.w));
 }
 
 //: atan
-vec4 f_atan(const vec4 a)
+precise vec4 f_atan(const vec4 a)
 {
     return vec4(a.xyz / (1.0 + a.w * a.w), f_atan(a.w));
 }
 
 //: exp
-vec4 f_exp(const vec4 a)
+precise vec4 f_exp(const vec4 a)
 {
     float e = f_exp(a.w);
     return vec4(a.xyz * e, e);
 }
 
 //: ln
-vec4 f_ln(const vec4 a)
+precise vec4 f_ln(const vec4 a)
 {
     return vec4(a.xyz / a.w, f_ln(a.w));
 }
 
 //: floor
-vec4 f_floor(const vec4 a)
+precise vec4 f_floor(const vec4 a)
 {
     return vec4(vec3(0.0), floor(a.w));
 }
 
 //: ceil
-vec4 f_ceil(const vec4 a)
+precise vec4 f_ceil(const vec4 a)
 {
     return vec4(vec3(0.0), ceil(a.w));
 }
 
 //: round
-vec4 f_round(const vec4 a)
+precise vec4 f_round(const vec4 a)
 {
     return vec4(vec3(0.0), f_round(a.w));
 }
 
 //: not
-vec4 f_not(const vec4 a)
+precise vec4 f_not(const vec4 a)
 {
     return vec4(vec3(0.0), f_not(a.w));
 }
 
 //: add
-vec4 f_add(const vec4 a, const vec4 b)
+precise vec4 f_add(const vec4 a, const vec4 b)
 {
     return vec4(a.xyz + b.xyz, f_add(a.w, b.w));
 }
 
-vec4 f_add(const vec4 a, const float b)
+precise vec4 f_add(const vec4 a, const float b)
 {
     return vec4(a.xyz, f_add(a.w, b));
 }
 
 //: sub
-vec4 f_sub(const vec4 a, const vec4 b)
+precise vec4 f_sub(const vec4 a, const vec4 b)
 {
     return vec4(a.xyz - b.xyz, f_sub(a.w, b.w));
 }
 
-vec4 f_sub(const vec4 a, const float b)
+precise vec4 f_sub(const vec4 a, const float b)
 {
     return vec4(a.xyz, f_sub(a.w, b));
 }
 
 //: mul
-vec4 f_mul(const vec4 a, const vec4 b)
+precise vec4 f_mul(const vec4 a, const vec4 b)
 {
     return vec4(a.xyz * b.w + b.xyz * a.w, f_mul(a.w, b.w));
 }
 
-vec4 f_mul(const vec4 a, const float b)
+precise vec4 f_mul(const vec4 a, const float b)
 {
     return vec4(a.xyz * b, f_mul(a.w, b));
 }
 
 //: div
-vec4 f_div(const vec4 a, const vec4 b)
+precise vec4 f_div(const vec4 a, const vec4 b)
 {
     float q = f_div(a.w, b.w);
     return vec4((a.xyz - q * b.xyz) / b.w, q);
 }
 
-vec4 f_div(const vec4 a, const float b)
+precise vec4 f_div(const vec4 a, const float b)
 {
     return vec4(a.xyz / b, f_div(a.w, b));
 }
 
 //: min
-vec4 f_min(const vec4 a, const vec4 b)
+precise vec4 f_min(const vec4 a, const vec4 b)
 {
     bool unknown = f_is_nan(b.w), less = b.w < a.w;
     return f_choose(less || unknown, b, a);
 }
 
-vec4 f_min(const vec4 a, const float b)
+precise vec4 f_min(const vec4 a, const float b)
 {
     return f_min(a, vec4(vec3(0.0), b));
 }
 
 //: max
-vec4 f_max(const vec4 a, const vec4 b)
+precise vec4 f_max(const vec4 a, const vec4 b)
 {
     bool unknown = f_is_nan(b.w), more = b.w > a.w;
     return f_choose(more || unknown, b, a);
 }
 
-vec4 f_max(const vec4 a, const float b)
+precise vec4 f_max(const vec4 a, const float b)
 {
     return f_max(a, vec4(vec3(0.0), b));
 }
 
 //: mod round
-vec4 f_mod(const vec4 a, const vec4 b)
+precise vec4 f_mod(const vec4 a, const vec4 b)
 {
     float r = f_mod(a.w, b.w);
     return vec4(a.xyz - f_round((a.w - r) / b.w) * b.xyz, r);
 }
 
 //: atan2
-vec4 f_atan2(const vec4 y, const vec4 x)
+precise vec4 f_atan2(const vec4 y, const vec4 x)
 {
     float square = x.w * x.w + y.w * y.w;
     return vec4((y.xyz * x.w - x.xyz * y.w) * f_inverse(square), f_atan2(y.w, x.w));
 }
 
 //: compare
-vec4 f_compare(const vec4 a, const vec4 b)
+precise vec4 f_compare(const vec4 a, const vec4 b)
 {
     return vec4(vec3(0.0), f_compare(a.w, b.w));
 }
 
 //: and
-vec4 f_and(const vec4 a, const vec4 b)
+precise vec4 f_and(const vec4 a, const vec4 b)
 {
     return f_choose(a.w == 0.0, a, b);
 }
 
 //: or
-vec4 f_or(const vec4 a, const vec4 b)
+precise vec4 f_or(const vec4 a, const vec4 b)
 {
     return f_choose(a.w == 0.0, b, a);
 }
 
 //: shift
-vec4 f_shift(const vec4 a, const float s)
+precise vec4 f_shift(const vec4 a, const float s)
 {
     return vec4(a.xyz, f_shift(a.w, s));
 }
 
 //: affine
-vec4 f_affine(const vec4 a, const float p, const float s)
+precise vec4 f_affine(const vec4 a, const float p, const float s)
 {
     return vec4(p * a.xyz, f_affine(a.w, p, s));
 }
 
-vec4 f_affine(const vec4 a, const vec4 b, const float p, const float q, const float s)
+precise vec4 f_affine(const vec4 a, const vec4 b, const float p, const float q, const float s)
 {
     return vec4(p * a.xyz + q * b.xyz, f_affine(a.w, b.w, p, q, s));
 }
 
-vec4 f_affine(const vec4 a, const vec4 b, const vec4 c, const float p, const float q, const float r, const float s)
+precise vec4 f_affine(const vec4 a, const vec4 b, const vec4 c, const float p, const float q, const float r, const float s)
 {
     return vec4(p * a.xyz + q * b.xyz + r * c.xyz, f_affine(a.w, b.w, c.w, p, q, r, s));
 }
 
 //: length
 /* The gradient of a length of two (or three); it is zero where the length is. */
-vec3 f_pull(const vec4 a, const vec4 b)
+precise vec3 f_pull(const vec4 a, const vec4 b)
 {
     return (a.xyz * a.w + b.xyz * b.w) * f_inverse(f_length(a.w, b.w));
 }
 
-vec3 f_pull(const vec4 a, const vec4 b, const vec4 c)
+precise vec3 f_pull(const vec4 a, const vec4 b, const vec4 c)
 {
     return (a.xyz * a.w + b.xyz * b.w + c.xyz * c.w) * f_inverse(f_length(a.w, b.w, c.w));
 }
 
 /* What is positive of a coordinate's size less an extent, with the gradient of the size. */
-vec4 f_beyond(const vec4 a, const float extent)
+precise vec4 f_beyond(const vec4 a, const float extent)
 {
     return vec4(f_away(a), f_positive(abs(a.w) - extent));
 }
 
 //: sphere length
-vec4 f_sphere(const vec4 a, const vec4 b, const vec4 c, const float radius)
+precise vec4 f_sphere(const vec4 a, const vec4 b, const vec4 c, const float radius)
 {
     return vec4(f_pull(a, b, c), f_sphere(a.w, b.w, c.w, radius));
 }
 
 //: box length
-vec4 f_box(const vec4 a, const vec4 b, const vec4 c, const float p, const float q, const float r)
+precise vec4 f_box(const vec4 a, const vec4 b, const vec4 c, const float p, const float q, const float r)
 {
     float x = abs(a.w) - p, y = abs(b.w) - q, z = abs(c.w) - r;
     vec3 inside = mix(f_away(a), f_away(b), bvec3(y > x));
@@ -277,21 +277,21 @@ vec4 f_box(const vec4 a, const vec4 b, const vec4 c, const float p, const float 
 }
 
 //: rounded_box box
-vec4 f_rounded_box(const vec4 a, const vec4 b, const vec4 c, const float p, const float q, const float r,
+precise vec4 f_rounded_box(const vec4 a, const vec4 b, const vec4 c, const float p, const float q, const float r,
                    const float radius)
 {
     return vec4(f_box(a, b, c, p, q, r).xyz, f_rounded_box(a.w, b.w, c.w, p, q, r, radius));
 }
 
 //: torus length
-vec4 f_torus(const vec4 a, const vec4 b, const vec4 c, const float major, const float minor)
+precise vec4 f_torus(const vec4 a, const vec4 b, const vec4 c, const float major, const float minor)
 {
     vec4 ring = vec4(f_pull(a, c), f_length(a.w, c.w) - major);
     return vec4(f_pull(ring, b), f_torus(a.w, b.w, c.w, major, minor));
 }
 
 //: cylinder length
-vec4 f_cylinder(const vec4 a, const vec4 b, const vec4 c, const float radius, const float half_height)
+precise vec4 f_cylinder(const vec4 a, const vec4 b, const vec4 c, const float radius, const float half_height)
 {
     float x = f_length(a.w, c.w) - radius, y = abs(b.w) - half_height;
     vec3 around = f_pull(a, c), along = f_away(b);
@@ -303,13 +303,13 @@ vec4 f_cylinder(const vec4 a, const vec4 b, const vec4 c, const float radius, co
 }
 
 //: capsule length
-vec4 f_capsule(const vec4 a, const vec4 b, const vec4 c, const float radius, const float half_height)
+precise vec4 f_capsule(const vec4 a, const vec4 b, const vec4 c, const float radius, const float half_height)
 {
     return vec4(f_pull(a, f_beyond(b, half_height), c), f_capsule(a.w, b.w, c.w, radius, half_height));
 }
 
 //: cone length
-vec4 f_cone(const vec4 a, const vec4 b, const vec4 c, const float bottom, const float top, const float half_height,
+precise vec4 f_cone(const vec4 a, const vec4 b, const vec4 c, const float bottom, const float top, const float half_height,
             const float u, const float v, const float slant, const float mean)
 {
     f_frustum f = f_around_frustum(f_length(a.w, c.w), b.w, bottom, top, half_height, u, v, slant, mean);
@@ -329,7 +329,7 @@ vec4 f_cone(const vec4 a, const vec4 b, const vec4 c, const float bottom, const 
 
 //: blend
 /* The lesser operand's gradient by 1 - w and the other's by w. */
-vec4 f_melt(const vec4 a, const vec4 b, const float w, const float value)
+precise vec4 f_melt(const vec4 a, const vec4 b, const float w, const float value)
 {
     bool turned = b.w < a.w;
     vec3 lesser = mix(a.xyz, b.xyz, bvec3(turned)), other = mix(b.xyz, a.xyz, bvec3(turned));
@@ -337,21 +337,21 @@ vec4 f_melt(const vec4 a, const vec4 b, const float w, const float value)
 }
 
 //: blend_quadratic blend
-vec4 f_blend_quadratic(const vec4 a, const vec4 b, const float k, const float inverse)
+precise vec4 f_blend_quadratic(const vec4 a, const vec4 b, const float k, const float inverse)
 {
     float t = f_overlap(a.w, b.w, k) * inverse;
     return f_melt(a, b, 0.5 * t, f_blend_quadratic(a.w, b.w, k, inverse));
 }
 
 //: blend_cubic blend
-vec4 f_blend_cubic(const vec4 a, const vec4 b, const float k, const float inverse)
+precise vec4 f_blend_cubic(const vec4 a, const vec4 b, const float k, const float inverse)
 {
     float t = f_overlap(a.w, b.w, k) * inverse;
     return f_melt(a, b, 0.5 * (t * t), f_blend_cubic(a.w, b.w, k, inverse));
 }
 
 //: blend_circular blend
-vec4 f_blend_circular(const vec4 a, const vec4 b, const float k, const float inverse)
+precise vec4 f_blend_circular(const vec4 a, const vec4 b, const float k, const float inverse)
 {
     float t = f_overlap(a.w, b.w, k) * inverse;
     float w = f_pick(t > 0.0, 0.5 - 0.5 * (1.0 - t) / sqrt(1.0 + t * (2.0 - t)), 0.0);
@@ -359,7 +359,7 @@ vec4 f_blend_circular(const vec4 a, const vec4 b, const float k, const float inv
 }
 
 //: blend_exponential blend
-vec4 f_blend_exponential(const vec4 a, const vec4 b, const float k, const float inverse)
+precise vec4 f_blend_exponential(const vec4 a, const vec4 b, const float k, const float inverse)
 {
     float apart = f_pick(a.w == b.w, 0.0, abs(a.w - b.w));
     float e = f_exp(-k * apart);

@@ -18,7 +18,8 @@ typedef struct hewn_command {
     int (*run)(const struct hewn_command *command, const hewn_arguments *arguments);
 } hewn_command;
 
-extern const hewn_command hewn_command_mesh, hewn_command_info, hewn_command_devices;
+extern const hewn_command hewn_command_mesh, hewn_command_info, hewn_command_check, hewn_command_repair,
+    hewn_command_convert, hewn_command_devices;
 extern const hewn_command *const hewn_commands[];
 extern const size_t hewn_command_count;
 
@@ -38,6 +39,9 @@ void hewn_help_print_command(const hewn_command *command, FILE *file);
 /* The exit code of a result: the only place that decides it. 0 done, 1 failed, 2 usage, 3 bad input, 4 device, 5 out of
  * memory, 130 cancelled. */
 int hewn_exit_code(hewn_result result);
+
+/* That of a mesh that is not what was required of it: a failure like others. */
+enum { HEWN_EXIT_UNMET = 1 };
 
 /* Says on stderr what failed, as "hewn: file:line: message", and returns the exit code. */
 int hewn_report_failure(const hewn_error *error);

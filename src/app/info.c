@@ -3,15 +3,18 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "app/file_arguments.h"
+#include "app/mesh_info.h"
 #include "app/scene_arguments.h"
 #include "base/error.h"
-#include "base/json.h"
+#include "pipeline/json_parts.h"
 
 static const hewn_option options[] = {
     {0, "json", NULL, "Print JSON."},
     {'D', NULL, "NAME=VALUE", "Set a parameter of the scene. May be repeated."},
     {0, "from", "FORMAT",
-     "Read the file as a scene in lua or vm. Default: by its extension; needed where FILE is `-`."},
+     "Read the file as lua or vm, or as a mesh in glb, gltf, obj, ply, stl or off. Default: by its extension; needed "
+     "where FILE is `-`."},
     {0, "allow-path", NULL, "Let the scene read files outside its own folder."},
     {'h', "help", NULL, "Print this help."},
 };
@@ -40,16 +43,6 @@ static hewn_result find_bounds(const hewn_scene *scene, found_bounds *out, hewn_
         return HEWN_OK;
     *error = out->reason;
     return result;
-}
-
-static const char *axis_name(hewn_axis axis)
-{
-    switch (axis) {
-    case HEWN_AXIS_PLUS_Y: return "+Y";
-    case HEWN_AXIS_PLUS_Z: return "+Z";
-    case HEWN_AXIS_PLUS_X: return "+X";
-    }
-    return "?";
 }
 
 static size_t node_count(const hewn_scene *scene)
@@ -105,8 +98,8 @@ static void print_scene(const char *path, const hewn_scene *scene, const found_b
 {
     printf("%s: scene\n", strcmp(path, "-") == 0 ? "standard input" : path);
     printf("nodes       %zu\n", node_count(scene));
-    printf("units       %s (%g m)\n", hewn_scene_units(scene), hewn_scene_metres_per_unit(scene));
-    printf("up          %s\n", axis_name(hewn_scene_up(scene)));
+    printf("units       %s (%g m)\n", hewn_scene_unit(scene)->name, hewn_scene_metres_per_unit(scene));
+    printf("up          %s\n", hewn_axis_name(hewn_scene_up(scene)));
     printf("bounds      ");
     if (bounds->known) {
         print_box(&bounds->box);
@@ -119,43 +112,7 @@ static void print_scene(const char *path, const hewn_scene *scene, const found_b
     print_parameters(scene);
 }
 
-static const char *yes(bool value)
-{
-    return value ? "yes" : "no";
-}
-
-static void print_mesh(const hewn_report *report)
-{
-    const hewn_certificate *certificate = &report->certificate;
-    printf("%s: mesh\n", report->input);
-    printf("vertices               %llu\n", (unsigned long long)report->vertices);
-    printf("faces                  %llu\n", (unsigned long long)report->faces);
-    printf("closed                 %s\n", yes(certificate->closed));
-    printf("manifold               %s\n", yes(certificate->manifold));
-    printf("oriented               %s\n", yes(certificate->oriented));
-    printf("components             %llu\n", (unsigned long long)certificate->components);
-    if (certificate->genus >= 0)
-        printf("genus                  %lld\n", (long long)certificate->genus);
-    if (certificate->closed && certificate->oriented)
-        printf("volume                 %.9g\n", certificate->volume);
-    printf("area                   %.9g\n", certificate->area);
-    printf("bounds                 ");
-    print_box(&certificate->bounds);
-    printf("\nboundary edges         %llu\n", (unsigned long long)certificate->boundary_edges);
-    printf("non-manifold edges     %llu\n", (unsigned long long)certificate->non_manifold_edges);
-    printf("non-manifold vertices  %llu\n", (unsigned long long)certificate->non_manifold_vertices);
-    printf("degenerate faces       %llu\n", (unsigned long long)certificate->degenerate_faces);
-}
-
 /* --- JSON -------------------------------------------------------------------------------------------------------- */
-
-static void json_vector(hewn_json *json, const char *key, const double vector[3])
-{
-    hewn_json_array(json, key);
-    for (int axis = 0; axis < 3; ++axis)
-        hewn_json_number(json, NULL, vector[axis]);
-    hewn_json_end_array(json);
-}
 
 static void json_parameter(hewn_json *json, const hewn_scene_parameter *parameter)
 {
@@ -175,10 +132,7 @@ static void json_parameter(hewn_json *json, const hewn_scene_parameter *paramete
 static void json_bounds(hewn_json *json, const found_bounds *bounds)
 {
     if (bounds->known) {
-        hewn_json_object(json, "bounds");
-        json_vector(json, "lo", bounds->box.lo);
-        json_vector(json, "hi", bounds->box.hi);
-        hewn_json_end_object(json);
+        hewn_json_box(json, "bounds", &bounds->box);
     } else {
         hewn_json_string(json, "bounds", NULL);
     }
@@ -198,9 +152,9 @@ static hewn_result print_scene_json(const char *path, const hewn_scene *scene, c
         hewn_json_string(&json, NULL, hewn_scene_file(scene, i));
     hewn_json_end_array(&json);
     hewn_json_unsigned(&json, "nodes", node_count(scene));
-    hewn_json_string(&json, "units", hewn_scene_units(scene));
+    hewn_json_string(&json, "units", hewn_scene_unit(scene)->name);
     hewn_json_number(&json, "metres_per_unit", hewn_scene_metres_per_unit(scene));
-    hewn_json_string(&json, "up", axis_name(hewn_scene_up(scene)));
+    hewn_json_string(&json, "up", hewn_axis_name(hewn_scene_up(scene)));
     json_bounds(&json, bounds);
     hewn_json_array(&json, "parameters");
     for (size_t i = 0; i < hewn_scene_parameter_count(scene); ++i)
@@ -234,44 +188,42 @@ static hewn_result tell_scene(const hewn_scene_desc *desc, bool json, hewn_error
     return result;
 }
 
-static hewn_result tell_mesh(const char *path, bool json, hewn_error *error)
+/* Whether the file is to be read as a mesh, and in which format where that is said. */
+static bool wants_mesh(const hewn_arguments *arguments, hewn_mesh_format *format)
 {
-    hewn_signals_catch();
-    hewn_progress progress = hewn_progress_begin(false);
-    hewn_report report;
-    hewn_result result = hewn_mesh_examine(path, &progress, &report, error);
-    hewn_progress_end();
-    if (result != HEWN_OK)
-        return result;
-    if (json)
-        result = hewn_report_write(&report, "-", error);
-    else
-        print_mesh(&report);
-    hewn_report_destroy(&report);
+    const char *from = hewn_arguments_value(arguments, "from");
+    *format = HEWN_MESH_UNKNOWN;
+    if (from)
+        return hewn_format_parse(from, "--from", format, NULL) == HEWN_OK;
+    return arguments->operand_count > 0 && hewn_mesh_format_of(arguments->operands[0]) != HEWN_MESH_UNKNOWN;
+}
+
+static hewn_result run_mesh(const hewn_arguments *arguments, hewn_mesh_format format, hewn_error *error)
+{
+    const char *path;
+    HEWN_TRY(hewn_input_argument_read(arguments, &path, error));
+    if (hewn_arguments_has(arguments, "D"))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "-D sets a parameter of a scene, but %s is a mesh", path);
+    return hewn_mesh_tell(path, format, hewn_arguments_has(arguments, "json"), error);
+}
+
+static hewn_result run_scene(const hewn_arguments *arguments, hewn_error *error)
+{
+    hewn_scene_arguments scene;
+    hewn_result result = hewn_scene_arguments_read(arguments, &scene, error);
+    if (result == HEWN_OK)
+        result = tell_scene(&scene.desc, hewn_arguments_has(arguments, "json"), error);
+    hewn_scene_arguments_destroy(&scene);
     return result;
 }
 
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
     hewn_error error = {0};
-    hewn_scene_arguments scene;
-    hewn_result result = hewn_scene_arguments_read(arguments, &scene, &error);
-    bool json = hewn_arguments_has(arguments, "json");
-    bool mesh = result == HEWN_OK && scene.desc.format == HEWN_SCENE_BY_NAME &&
-                hewn_mesh_format_of(scene.desc.path) != HEWN_MESH_UNKNOWN;
-    if (mesh && scene.count > 0)
-        result = hewn_fail(&error, HEWN_INVALID_ARGUMENT, "-D sets a parameter of a scene, but %s is a mesh",
-                           scene.desc.path);
-    int code = 0;
-    if (result != HEWN_OK) {
-        code = hewn_report_misuse(command, &error);
-    } else {
-        result = mesh ? tell_mesh(scene.desc.path, json, &error) : tell_scene(&scene.desc, json, &error);
-        if (result != HEWN_OK)
-            code = hewn_report_misuse(command, &error);
-    }
-    hewn_scene_arguments_destroy(&scene);
-    return code;
+    hewn_mesh_format format;
+    hewn_result result =
+        wants_mesh(arguments, &format) ? run_mesh(arguments, format, &error) : run_scene(arguments, &error);
+    return result == HEWN_OK ? 0 : hewn_report_misuse(command, &error);
 }
 
 const hewn_command hewn_command_info = {
@@ -279,8 +231,9 @@ const hewn_command hewn_command_info = {
     .summary = "tell what is in a scene or a mesh file",
     .usage = "FILE [OPTION]...",
     .about = "Of a scene (.lua, .vm): its parameters with default, value, range and help, its\n"
-             "bounds, units, up axis, files and the size of its field. Of a mesh (.glb, .obj,\n"
-             ".ply, .stl): its counts and its certificate. Needs no device.\n",
+             "bounds, units, up axis, files and the size of its field. Of a mesh (.glb, .gltf,\n"
+             ".obj, .ply, .stl, .off, also with .gz): its counts, unit, axes and attributes,\n"
+             "and what `hewn check` finds but for self-intersections. Needs no device.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"

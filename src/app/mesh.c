@@ -4,14 +4,15 @@
 #include <unistd.h>
 
 #include "app/app.h"
+#include "app/file_arguments.h"
 #include "app/number.h"
 #include "app/scene_arguments.h"
 #include "base/error.h"
 
 static const hewn_option options[] = {
     {'o', "output", "FILE",
-     "Write the mesh to FILE; its extension (.glb, .obj, .ply, .stl) names the format. `-` is standard output, with "
-     "--to. Required."},
+     "Write the mesh to FILE; its extension (.glb, .obj, .ply, .stl, .off, .3mf) names the format. `-` is standard "
+     "output, with --to. Required."},
     {0, "res", "N", "Use N cells on the longest side of the bounds. Default: 128."},
     {0, "cell", "H", "Use cells of side H, in the scene's units, instead of --res."},
     {0, "method", "NAME", "Extract the surface by this method: mc (marching cubes). Default: mc."},
@@ -20,7 +21,7 @@ static const hewn_option options[] = {
     {0, "open", NULL, "Leave the surface open where it leaves the bounds. Default: close it there with a flat cap."},
     {'D', NULL, "NAME=VALUE", "Set a parameter of the scene; `hewn info SCENE` lists them. May be repeated."},
     {0, "from", "FORMAT", "Read the scene as lua or vm. Default: by its extension; needed where SCENE is `-`."},
-    {0, "to", "FORMAT", "Write the mesh as glb, obj, ply or stl. Default: by the output's extension."},
+    HEWN_OPTION_TO,
     {0, "allow-path", NULL, "Let the scene read files outside its own folder."},
     {0, "device", "DEVICE",
      "Compute on this device, an index or a part of a name as `hewn devices` lists them. Default: $HEWN_DEVICE, else "
@@ -81,11 +82,8 @@ static hewn_result read_output(const hewn_arguments *arguments, mesh_request *re
     if (!desc->output[0] || (desc->report && !desc->report[0]))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
     const char *format = hewn_arguments_value(arguments, "to");
-    if (format) {
-        desc->format = hewn_mesh_format_of(format);
-        if (desc->format == HEWN_MESH_UNKNOWN)
-            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--to is glb, obj, ply or stl, not '%s'", format);
-    }
+    if (format)
+        HEWN_TRY(hewn_format_parse(format, "--to", &desc->format, error));
     bool binary = desc->format == HEWN_MESH_PLY || desc->format == HEWN_MESH_STL;
     if (is_dash(desc->output) && binary && isatty(STDOUT_FILENO))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
@@ -157,11 +155,13 @@ static void print_summary(const hewn_report *report)
 /* --- running ----------------------------------------------------------------------------------------------------- */
 
 /* Meshes once. Where `watch` is not NULL it learns of every file that was read. */
-static hewn_result mesh_once(const mesh_request *request, double began, hewn_watch *watch, hewn_error *error)
+static hewn_result mesh_once(const mesh_request *request, double began, hewn_watch *watch, hewn_mesh_kept *kept,
+                             hewn_error *error)
 {
     hewn_progress progress = hewn_progress_begin(request->quiet);
     hewn_mesh_job_desc desc = request->desc;
     desc.progress = &progress;
+    desc.kept = kept;
     desc.began = began;
     hewn_report report;
     hewn_result result = hewn_mesh_scene(&desc, &report, error);
@@ -184,13 +184,13 @@ static bool is_end(hewn_result result)
            result == HEWN_NO_DEVICE || result == HEWN_MISSING_FEATURE;
 }
 
-static hewn_result watch_scene(const mesh_request *request, hewn_watch *watch, hewn_error *error)
+static hewn_result watch_scene(const mesh_request *request, hewn_watch *watch, hewn_mesh_kept *kept, hewn_error *error)
 {
     HEWN_TRY(hewn_watch_add(watch, request->desc.scene.path, error));
     double began = hewn_started();
     for (;;) {
         hewn_watch_mark(watch);
-        hewn_result result = mesh_once(request, began, watch, error);
+        hewn_result result = mesh_once(request, began, watch, kept, error);
         if (is_end(result))
             return result;
         if (result != HEWN_OK)
@@ -216,10 +216,15 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
     } else {
         hewn_signals_catch();
         hewn_watch *watch = NULL;
+        hewn_mesh_kept *kept = NULL;
         if (request.watch)
             result = hewn_watch_create(&watch, &error);
+        if (result == HEWN_OK && request.watch)
+            result = hewn_mesh_kept_create(&kept, &error);
         if (result == HEWN_OK)
-            result = watch ? watch_scene(&request, watch, &error) : mesh_once(&request, hewn_started(), NULL, &error);
+            result = watch ? watch_scene(&request, watch, kept, &error)
+                           : mesh_once(&request, hewn_started(), NULL, NULL, &error);
+        hewn_mesh_kept_destroy(&kept);
         hewn_watch_destroy(&watch);
         if (result != HEWN_OK)
             code = hewn_report_misuse(command, &error);
@@ -234,8 +239,8 @@ const hewn_command hewn_command_mesh = {
     .usage = "SCENE -o FILE [OPTION]...",
     .about = "Runs SCENE (.lua, .vm; `-` reads standard input) and writes the surface of its\n"
              "field as triangles, proven to be a closed, oriented 2-manifold. GLB is in metres\n"
-             "with +Y up; the other formats keep the scene's coordinates. A file appears under\n"
-             "its name only when it is complete. A summary goes to standard error.\n",
+             "with +Y up, 3MF has +Z up; other formats keep the scene's coordinates. A file\n"
+             "appears under its name only when complete. A summary goes to standard error.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"

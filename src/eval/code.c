@@ -9,49 +9,107 @@
 
 /* --- parameters -------------------------------------------------------------------------------------------------- */
 
-static bool by_address(const hewn_code *code)
+/* Every device lets a workgroup share this much memory (Vulkan's least maxComputeSharedMemorySize). */
+enum { TABLE_BYTES = 16384 };
+
+/* Whole vectors, and at least one: a uniform block cannot be empty. */
+static uint64_t parameter_bytes(const hewn_listing *listing)
 {
-    return code->parameters.size > 0;
+    size_t vectors = (listing->parameter_count + 3) / 4;
+    return (vectors > 0 ? vectors : 1) * 4 * sizeof(float);
+}
+
+static hewn_number_place choose_place(const hewn_device *device, const hewn_listing *listing, hewn_numbers numbers)
+{
+    uint64_t bytes = parameter_bytes(listing);
+    bool on_cpu = device->info.kind == HEWN_DEVICE_CPU;
+    bool table = bytes <= TABLE_BYTES && bytes <= device->max_uniform_range;
+    if (numbers == HEWN_NUMBERS_IN_CODE || (numbers == HEWN_NUMBERS_AUTO && on_cpu && !table))
+        return HEWN_PLACE_CODE;
+    if (on_cpu && table)
+        return HEWN_PLACE_TABLE;
+    return bytes <= device->max_uniform_range ? HEWN_PLACE_UNIFORM : HEWN_PLACE_ADDRESS;
+}
+
+/* Where the numbers themselves are on the device. */
+static const hewn_buffer *number_buffer(const hewn_code *code)
+{
+    return code->place == HEWN_PLACE_ADDRESS ? &code->parameters : &code->uniforms;
+}
+
+static hewn_result create_filled(hewn_device *device, uint64_t bytes, const void *start, size_t length,
+                                 hewn_buffer *out, hewn_error *error)
+{
+    HEWN_TRY(hewn_buffer_create(device, "parameters", bytes, HEWN_BUFFER_UPLOAD, out, error));
+    memset(out->mapped, 0, bytes);
+    memcpy(out->mapped, start, length);
+    return HEWN_OK;
 }
 
 static hewn_result write_parameters(hewn_device *device, hewn_code *code, hewn_error *error)
 {
     const hewn_listing *listing = &code->listing;
-    size_t count = listing->fixed ? 0 : listing->parameter_count;
-    uint64_t bytes = (count * sizeof(float) + 15) / 16 * 16;
-    bytes = bytes < 16 ? 16 : bytes;
-    if (bytes <= device->max_uniform_range) {
-        HEWN_TRY(hewn_buffer_create(device, "parameters", bytes, HEWN_BUFFER_UPLOAD, &code->uniforms, error));
-        memset(code->uniforms.mapped, 0, bytes);
-        memcpy(code->uniforms.mapped, listing->parameters, count * sizeof(float));
-        return HEWN_OK;
-    }
-    HEWN_TRY(hewn_buffer_create(device, "parameters", bytes, HEWN_BUFFER_UPLOAD, &code->parameters, error));
-    memcpy(code->parameters.mapped, listing->parameters, count * sizeof(float));
-    HEWN_TRY(hewn_buffer_create(device, "parameters", 16, HEWN_BUFFER_UPLOAD, &code->uniforms, error));
-    memset(code->uniforms.mapped, 0, 16);
-    memcpy(code->uniforms.mapped, &code->parameters.address, sizeof code->parameters.address);
-    return HEWN_OK;
+    size_t length = code->place == HEWN_PLACE_CODE ? 0 : listing->parameter_count * sizeof(float);
+    uint64_t bytes = code->place == HEWN_PLACE_CODE ? 16 : parameter_bytes(listing);
+    if (code->place != HEWN_PLACE_ADDRESS)
+        return create_filled(device, bytes, listing->parameters, length, &code->uniforms, error);
+    HEWN_TRY(create_filled(device, bytes, listing->parameters, length, &code->parameters, error));
+    const uint64_t address = code->parameters.address;
+    return create_filled(device, 16, &address, sizeof address, &code->uniforms, error);
 }
 
-/* Uniforms are read with addresses that all invocations share, which is a plain load on CPUs, while reads through a
- * buffer's address are gathered lane by lane there. */
+static void write_uniform_block(unsigned vectors, hewn_text *text)
+{
+    hewn_text_print(text, "layout(set = 0, binding = 0) uniform hewn_parameter_block { vec4 hewn_parameters[%u]; };\n",
+                    vectors);
+}
+
+/* Declares where parameters are and what P(i) is. Uniforms are read with addresses that all invocations share, which is
+ * a plain load on CPUs, while reads through a buffer's address are gathered lane by lane there. */
 static void write_parameter_block(const hewn_code *code, hewn_text *text)
 {
-    if (code->listing.fixed)
-        return;
-    if (!by_address(code)) {
-        hewn_text_print(text,
-                        "layout(set = 0, binding = 0) uniform hewn_parameter_block { vec4 hewn_parameters[%u]; };\n",
-                        (unsigned)(code->uniforms.size / 16));
+    unsigned vectors = (unsigned)(code->uniforms.size / 16);
+    switch (code->place) {
+    case HEWN_PLACE_CODE: break;
+    case HEWN_PLACE_TABLE:
+        write_uniform_block(vectors, text);
+        hewn_text_print(text, "shared vec4 hewn_table[%u];\nvec4 hewn_numbers[%u];\n", vectors, vectors);
+        hewn_text_append(text, "#define P(i) hewn_numbers[(i) >> 2][(i) & 3]\n");
+        break;
+    case HEWN_PLACE_UNIFORM:
+        write_uniform_block(vectors, text);
         hewn_text_append(text, "#define P(i) hewn_parameters[(i) >> 2][(i) & 3]\n");
+        break;
+    case HEWN_PLACE_ADDRESS:
+        hewn_text_append(text, "layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer "
+                               "hewn_parameter_list { float at[]; };\n"
+                               "layout(set = 0, binding = 0) uniform hewn_parameter_block { hewn_parameter_list "
+                               "hewn_parameters; };\n"
+                               "#define P(i) hewn_parameters.at[i]\n");
+        break;
+    }
+}
+
+/* Mesa's llvmpipe compiles each read of a uniform, and of anything inside a condition or a loop, as a branch or as a
+ * loop over its lanes; only reads of shared memory that stand before all of these become plain loads. So the uniforms
+ * are brought into shared memory by one loop, and from there into variables, before the kernel's own main() begins. */
+static void write_body(const hewn_code *code, const char *body, hewn_text *text)
+{
+    if (code->place != HEWN_PLACE_TABLE) {
+        hewn_text_append(text, body);
         return;
     }
-    hewn_text_append(text, "layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer "
-                           "hewn_parameter_list { float at[]; };\n"
-                           "layout(set = 0, binding = 0) uniform hewn_parameter_block { hewn_parameter_list "
-                           "hewn_parameters; };\n"
-                           "#define P(i) hewn_parameters.at[i]\n");
+    unsigned vectors = (unsigned)(code->uniforms.size / 16);
+    hewn_text_append(text, "#define main hewn_main\n");
+    hewn_text_append(text, body);
+    hewn_text_print(text,
+                    "\n#undef main\nvoid main()\n{\n"
+                    "for (uint i = gl_LocalInvocationIndex; i < %uu; i += gl_WorkGroupSize.x)\n"
+                    "hewn_table[i] = hewn_parameters[i];\nbarrier();\n",
+                    vectors);
+    for (unsigned i = 0; i < vectors; i++)
+        hewn_text_print(text, "hewn_numbers[%u] = hewn_table[%u];\n", i, i);
+    hewn_text_append(text, "hewn_main();\n}\n");
 }
 
 /* --- life -------------------------------------------------------------------------------------------------------- */
@@ -78,10 +136,11 @@ hewn_result hewn_code_create_with(hewn_device *device, const hewn_field *field, 
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a field's code");
     }
     hewn_result result = hewn_listing_create(&code->listing, field, root, error);
-    code->listing.fixed =
-        numbers == HEWN_NUMBERS_IN_CODE || (numbers == HEWN_NUMBERS_AUTO && device->info.kind == HEWN_DEVICE_CPU);
-    if (result == HEWN_OK)
+    if (result == HEWN_OK) {
+        code->place = choose_place(device, &code->listing, numbers);
+        code->listing.fixed = code->place == HEWN_PLACE_CODE;
         result = choose_blocks(code, error);
+    }
     if (result == HEWN_OK)
         result = write_parameters(device, code, error);
     if (result != HEWN_OK)
@@ -108,6 +167,44 @@ void hewn_code_destroy(hewn_device *device, hewn_code **code)
     *code = NULL;
 }
 
+/* The texts tell best whether two fields make the same code: nothing else is compiled. */
+static hewn_result same_text(const hewn_listing *a, const hewn_listing *b, bool *same, hewn_error *error)
+{
+    const uint32_t all = HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_ROW;
+    hewn_text texts[2] = {{0}, {0}};
+    hewn_listing_write(a, all, &texts[0]);
+    hewn_listing_write(b, all, &texts[1]);
+    hewn_result result = hewn_text_status(&texts[0], error);
+    if (result == HEWN_OK)
+        result = hewn_text_status(&texts[1], error);
+    *same = result == HEWN_OK && strcmp(texts[0].bytes, texts[1].bytes) == 0;
+    hewn_text_clear(&texts[0]);
+    hewn_text_clear(&texts[1]);
+    return result;
+}
+
+hewn_result hewn_code_renumber(hewn_code *code, const hewn_field *field, hewn_node root, bool *taken, hewn_error *error)
+{
+    *taken = false;
+    if (code->place == HEWN_PLACE_CODE)
+        return HEWN_OK;
+    hewn_listing listing;
+    HEWN_TRY(hewn_listing_create(&listing, field, root, error));
+    bool same = false;
+    hewn_result result = HEWN_OK;
+    if (listing.parameter_count == code->listing.parameter_count)
+        result = same_text(&code->listing, &listing, &same, error);
+    if (same) {
+        memcpy(number_buffer(code)->mapped, listing.parameters, listing.parameter_count * sizeof(float));
+        hewn_listing_destroy(&code->listing);
+        code->listing = listing;
+        *taken = true;
+    } else {
+        hewn_listing_destroy(&listing);
+    }
+    return result;
+}
+
 const hewn_buffer *hewn_code_uniforms(const hewn_code *code)
 {
     return &code->uniforms;
@@ -121,7 +218,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
     size_t version = strcspn(desc->head, "\n");
     version += desc->head[version] == '\n';
     hewn_text_append_bytes(text, desc->head, version);
-    if (by_address(code))
+    if (code->place == HEWN_PLACE_ADDRESS)
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n");
     hewn_text_append(text, desc->head + version);
     hewn_text_append(text, "\n");
@@ -132,7 +229,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
     if (desc->flavours & HEWN_FLAVOUR_GRADIENT)
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_GRADIENT, text);
     hewn_listing_write(&code->listing, desc->flavours, text);
-    hewn_text_append(text, desc->body);
+    write_body(code, desc->body, text);
 }
 
 hewn_result hewn_code_program(hewn_device *device, const hewn_code *code, const hewn_kernel_desc *desc,

@@ -19,11 +19,10 @@ typedef enum hewn_flavour {
                             code and defines it. What does not depend on x is evaluated once a row. */
 } hewn_flavour;
 
-/* Where the field's numbers live. In a buffer, another number of the same field needs no compilation. In the code, it
- * does; but CPU drivers compile every read of a buffer as a branch, which makes the first compilation ten times as
- * long. Values have the same bits either way. */
+/* Where the field's numbers live. In a buffer, another number of the same field needs no compilation. In the code it
+ * does, and the first compilation is a little shorter. Values, bounds and gradients have the same bits either way. */
 typedef enum hewn_numbers {
-    HEWN_NUMBERS_AUTO, /* in the code on CPU devices, else in a buffer */
+    HEWN_NUMBERS_AUTO, /* in a buffer; in the code on CPU devices where there are more than 4,096 */
     HEWN_NUMBERS_IN_BUFFER,
     HEWN_NUMBERS_IN_CODE
 } hewn_numbers;
@@ -34,6 +33,11 @@ hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_
 hewn_result hewn_code_create_with(hewn_device *device, const hewn_field *field, hewn_node root, hewn_numbers numbers,
                                   hewn_code **out, hewn_error *error);
 void hewn_code_destroy(hewn_device *device, hewn_code **code);
+
+/* Takes another field's numbers, for this code and all programs made of it, where the code would be the same but for
+ * them; `*taken` tells whether. False where the numbers are in the code. No dispatch may be under way. */
+hewn_result hewn_code_renumber(hewn_code *code, const hewn_field *field, hewn_node root, bool *taken,
+                               hewn_error *error);
 
 /* A kernel that calls the field. Its text is `head` (starts with #version and extensions; `common` below is appended by
  * the callee), then the field's functions, then `body`. Its dispatches must pass hewn_code_uniforms(). */

@@ -10,8 +10,17 @@ typedef struct hewn_batches {
     hewn_program *programs[3];
 } hewn_batches;
 
+/* How kernels come by the numbers. */
+typedef enum hewn_number_place {
+    HEWN_PLACE_CODE,    /* literals */
+    HEWN_PLACE_TABLE,   /* from uniforms into a table that a workgroup shares, and from there into variables */
+    HEWN_PLACE_UNIFORM, /* read as uniforms where they are used */
+    HEWN_PLACE_ADDRESS  /* more than uniforms hold: read through an address that is one */
+} hewn_number_place;
+
 struct hewn_code {
     hewn_listing listing;
+    hewn_number_place place;
     hewn_library library;
     hewn_library_choice choice;
     hewn_buffer uniforms; /* the parameters, or, where they do not fit a uniform block, their address */

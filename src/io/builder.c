@@ -1,42 +1,31 @@
 #include "io/builder.h"
 
-#include <math.h>
-
-static hewn_result check_mesh(const hewn_triangles *mesh, const char *name, hewn_error *error)
+/* Up to the first face that is no triangle there is no `first`. */
+static hewn_result begin_polygons(hewn_builder *builder, hewn_error *error)
 {
-    if (mesh->vertex_count > UINT32_MAX)
-        return hewn_fail_at(error, HEWN_LIMIT, name, 0, "more than 4294967295 vertices");
-    for (uint64_t v = 0; v < mesh->vertex_count; v++) {
-        const float *p = mesh->positions + 3 * v;
-        if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])))
-            return hewn_fail_at(error, HEWN_BAD_INPUT, name, 0, "the position of vertex %llu is not finite",
-                                (unsigned long long)v);
-    }
-    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
-        if (mesh->indices[i] >= mesh->vertex_count)
-            return hewn_fail_at(error, HEWN_BAD_INPUT, name, 0,
-                                "triangle %llu names vertex %u, but there are %llu vertices",
-                                (unsigned long long)(i / 3), mesh->indices[i], (unsigned long long)mesh->vertex_count);
+    hewn_model *model = &builder->model;
+    void *items = NULL;
+    HEWN_TRY(hewn_reserve(&items, &builder->first_room, model->face_count + 2, sizeof(uint64_t), error));
+    model->first = items;
+    for (uint64_t face = 0; face <= model->face_count; face++)
+        model->first[face] = 3 * face;
     return HEWN_OK;
 }
 
-/* Whether all normals could be made unit length. One that nearly is stays as it is, so that a file read and written
- * again keeps its bits. */
-static bool tidy_normals(hewn_triangles *mesh)
+hewn_result hewn_builder_end_face(hewn_builder *builder, hewn_error *error)
 {
-    for (uint64_t v = 0; v < mesh->vertex_count; v++) {
-        float *n = mesh->normals + 3 * v;
-        double x = (double)n[0], y = (double)n[1], z = (double)n[2];
-        double length = sqrt(x * x + y * y + z * z);
-        if (!isfinite(length) || length == 0)
-            return false;
-        if (fabs(length - 1) < 1e-4)
-            continue;
-        n[0] = (float)(x / length);
-        n[1] = (float)(y / length);
-        n[2] = (float)(z / length);
+    hewn_model *model = &builder->model;
+    if (!model->first && builder->corner_count == 3 * (model->face_count + 1)) {
+        model->face_count++;
+        return HEWN_OK;
     }
-    return true;
+    if (!model->first)
+        HEWN_TRY(begin_polygons(builder, error));
+    void *items = model->first;
+    HEWN_TRY(hewn_reserve(&items, &builder->first_room, model->face_count + 2, sizeof(uint64_t), error));
+    model->first = items;
+    model->first[++model->face_count] = builder->corner_count;
+    return HEWN_OK;
 }
 
 static void shrink(void **items, uint64_t count, size_t room, size_t size)
@@ -47,33 +36,31 @@ static void shrink(void **items, uint64_t count, size_t room, size_t size)
     }
 }
 
-hewn_result hewn_builder_finish(hewn_builder *builder, const char *name, hewn_triangles *out, hewn_error *error)
+hewn_result hewn_builder_finish(hewn_builder *builder, const char *name, hewn_error *error)
 {
-    hewn_triangles *mesh = &builder->mesh;
-    hewn_result result = check_mesh(mesh, name, error);
-    if (result != HEWN_OK) {
-        hewn_builder_clear(builder);
-        *out = (hewn_triangles){0};
-        return result;
-    }
-    if (mesh->normals && !tidy_normals(mesh)) {
-        hewn_free(mesh->normals);
-        mesh->normals = NULL;
-    }
-    void *positions = mesh->positions, *normals = mesh->normals, *indices = mesh->indices;
-    shrink(&positions, mesh->vertex_count, builder->position_room, 3 * sizeof(float));
-    shrink(&normals, mesh->vertex_count, builder->normal_room, 3 * sizeof(float));
-    shrink(&indices, mesh->triangle_count, builder->index_room, 3 * sizeof(uint32_t));
-    mesh->positions = positions;
-    mesh->normals = normals;
-    mesh->indices = indices;
-    *out = *mesh;
-    *builder = (hewn_builder){0};
+    hewn_model *model = &builder->model;
+    hewn_error reason = {0};
+    hewn_result result = hewn_model_check(model, &reason);
+    if (result != HEWN_OK)
+        return hewn_fail_at(error, result, name, 0, "%s", reason.message);
+    void *positions = model->positions, *first = model->first, *corners = model->corners;
+    shrink(&positions, model->vertex_count, builder->position_room, 3 * sizeof(double));
+    shrink(&first, model->face_count + 1, builder->first_room, sizeof(uint64_t));
+    shrink(&corners, builder->corner_count, builder->corner_room, sizeof(uint32_t));
+    model->positions = positions;
+    model->first = first;
+    model->corners = corners;
     return HEWN_OK;
+}
+
+void hewn_builder_move(hewn_builder *builder, hewn_model *out)
+{
+    *out = builder->model;
+    *builder = (hewn_builder){0};
 }
 
 void hewn_builder_clear(hewn_builder *builder)
 {
-    hewn_triangles_destroy(&builder->mesh);
+    hewn_model_destroy(&builder->model);
     *builder = (hewn_builder){0};
 }

@@ -1,50 +1,93 @@
-/* The formats' own readers and writers, behind hewn_mesh_read() and hewn_mesh_write(). */
+/* The formats' own readers and writers, behind hewn_model_read(), hewn_model_write() and hewn_triangles_write(). */
 #ifndef HEWN_SRC_IO_FORMATS_H
 #define HEWN_SRC_IO_FORMATS_H
 
 #include "base/file.h"
 #include "hewn/io.h"
 
-/* --- readers: a whole file in memory. `name` is for messages; nothing of `bytes` is kept. ----------------------------
- */
+/* --- readers ------------------------------------------------------------------------------------------------------ */
 
-hewn_result hewn_obj_read(const char *bytes, size_t length, const char *name, hewn_triangles *out, hewn_error *error);
-hewn_result hewn_ply_read(const char *bytes, size_t length, const char *name, hewn_triangles *out, hewn_error *error);
-hewn_result hewn_stl_read(const char *bytes, size_t length, const char *name, hewn_triangles *out, hewn_error *error);
+/* A whole file in memory, already unpacked. */
+typedef struct hewn_source {
+    const char *bytes;
+    size_t length;
+    const char *name; /* for messages */
+    const char *path; /* where other files are looked for; NULL: nowhere */
+    const hewn_progress *progress;
+} hewn_source;
 
-/* GLB, or glTF's JSON; told apart by the first bytes. Buffers in files of their own are read from the folder of `path`;
- * where `path` is NULL they are HEWN_BAD_INPUT. */
-hewn_result hewn_gltf_read(const char *bytes, size_t length, const char *name, const char *path, hewn_triangles *out,
-                           hewn_error *error);
+/* Makes a model of a source and keeps nothing of it; `*out` is zero after an error. */
+typedef hewn_result (*hewn_format_read)(const hewn_source *source, hewn_model *out, hewn_error *error);
 
-/* --- writers ---------------------------------------------------------------------------------------------------------
- */
+hewn_result hewn_gltf_read(const hewn_source *source, hewn_model *out, hewn_error *error); /* GLB or JSON */
+hewn_result hewn_obj_read(const hewn_source *source, hewn_model *out, hewn_error *error);
+hewn_result hewn_off_read(const hewn_source *source, hewn_model *out, hewn_error *error);
+hewn_result hewn_ply_read(const hewn_source *source, hewn_model *out, hewn_error *error);
+hewn_result hewn_stl_read(const hewn_source *source, hewn_model *out, hewn_error *error);
+
+/* --- writers ------------------------------------------------------------------------------------------------------ */
 
 /* What is to be written, checked: indices in range, numbers finite. */
-typedef struct hewn_mesh_writing {
-    const hewn_triangles *mesh;
-    const char *name; /* of the object: one line, no control characters */
-    double metres_per_unit;
+typedef struct hewn_writing {
+    uint64_t vertex_count, face_count, corner_count;
+    const float *floats;   /* positions, of triangle buffers, */
+    const double *doubles; /* or of a model */
+    bool all_float;        /* every position is a float */
+    const uint64_t *first; /* NULL: every face is a triangle */
+    const uint32_t *corners;
+    const uint32_t *cut; /* for writers of triangles: 3 places in `corners` each; NULL: the faces are the triangles */
+    uint64_t triangle_count;
+    const hewn_channel *channels;
+    uint32_t channel_count;
+    const char *name;      /* of the object: one line, no control characters */
+    const hewn_unit *unit; /* NULL: nobody knows */
     hewn_axis up;
+    bool up_known;
     const hewn_progress *progress;
     char *head; /* what a writer's prepare made; freed by the caller of both */
     size_t head_length;
-} hewn_mesh_writing;
+    void *own; /* a writer's own state between prepare and write, freed by its release */
+} hewn_writing;
 
-/* One format. `fits` fails with HEWN_LIMIT where the format cannot hold that many, and looks at counts only; it may be
- * NULL. `prepare`, still before a file exists, makes `head`, with which `write` begins. */
-typedef struct hewn_mesh_writer {
-    hewn_result (*fits)(const hewn_triangles *mesh, hewn_error *error);
-    hewn_result (*prepare)(hewn_mesh_writing *job, hewn_error *error);
-    hewn_result (*write)(const hewn_mesh_writing *job, hewn_output *output, hewn_error *error);
-} hewn_mesh_writer;
+/* One format. `fits` fails with HEWN_LIMIT where the format cannot hold that many, and looks at counts only; `prepare`,
+ * still before a file exists, may make `head`, with which `write` begins. All but `write` may be NULL. */
+typedef struct hewn_format_writer {
+    bool triangles; /* polygons must be cut */
+    bool to_stdout; /* may go to standard output */
+    hewn_result (*fits)(const hewn_writing *job, hewn_error *error);
+    hewn_result (*prepare)(hewn_writing *job, hewn_error *error);
+    hewn_result (*write)(const hewn_writing *job, hewn_output *output, hewn_error *error);
+    void (*release)(hewn_writing *job);
+} hewn_format_writer;
 
-extern const hewn_mesh_writer hewn_glb_writer, hewn_obj_writer, hewn_ply_writer, hewn_stl_writer;
+extern const hewn_format_writer hewn_glb_writer, hewn_obj_writer, hewn_ply_writer, hewn_stl_writer, hewn_off_writer,
+    hewn_3mf_writer;
 
 /* How much is written between two looks at the progress callback. */
-enum { HEWN_WRITE_BLOCK = 1 << 12 }; /* vertices or triangles */
+enum { HEWN_WRITE_BLOCK = 1 << 12 }; /* items */
 
-/* "+Y", "+Z" or "+X". */
-const char *hewn_axis_name(hewn_axis axis);
+static inline void hewn_writing_position(const hewn_writing *job, uint64_t vertex, double out[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = job->floats ? (double)job->floats[3 * vertex + axis] : job->doubles[3 * vertex + axis];
+}
+
+/* The corners of triangle t, as places in `corners`. */
+static inline void hewn_writing_triangle(const hewn_writing *job, uint64_t triangle, uint64_t out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = job->cut ? job->cut[3 * triangle + k] : 3 * triangle + k;
+}
+
+static inline uint64_t hewn_writing_first(const hewn_writing *job, uint64_t face)
+{
+    return job->first ? job->first[face] : 3 * face;
+}
+
+/* The channel of a name, or NULL. */
+const hewn_channel *hewn_writing_channel(const hewn_writing *job, hewn_domain domain, const char *name);
+
+/* Component `component` of element `index` as a real number. */
+double hewn_channel_number(const hewn_channel *channel, uint64_t index, uint32_t component);
 
 #endif

@@ -1,5 +1,7 @@
 #include "io/ply_header.h"
 
+#include <string.h>
+
 #include "base/alloc.h"
 #include "base/error.h"
 
@@ -18,39 +20,37 @@ static hewn_ply_type type_of(hewn_word word)
     return HEWN_PLY_NONE;
 }
 
-size_t hewn_ply_type_size(hewn_ply_type type)
-{
-    switch (type) {
-    case HEWN_PLY_NONE: return 0;
-    case HEWN_PLY_INT8:
-    case HEWN_PLY_UINT8: return 1;
-    case HEWN_PLY_INT16:
-    case HEWN_PLY_UINT16: return 2;
-    case HEWN_PLY_INT32:
-    case HEWN_PLY_UINT32:
-    case HEWN_PLY_FLOAT: return 4;
-    case HEWN_PLY_DOUBLE: return 8;
-    }
-    return 0;
-}
-
-uint64_t hewn_ply_least_size(const hewn_ply_header *header, const hewn_ply_element *element)
+uint64_t hewn_ply_least_size(const hewn_ply_header *header, const hewn_ply_element *element, bool *fixed)
 {
     uint64_t size = 0;
+    bool lists = false;
     for (size_t i = 0; i < element->property_count; i++) {
         const hewn_ply_property *property = &header->properties[element->first + i];
         bool list = property->count_type != HEWN_PLY_NONE;
+        lists = lists || list;
         /* in text a digit and a blank */
         size += header->form == HEWN_PLY_TEXT ? 2 : hewn_ply_type_size(list ? property->count_type : property->type);
     }
+    if (fixed)
+        *fixed = header->form != HEWN_PLY_TEXT && !lists;
     return size;
+}
+
+size_t hewn_ply_find(const hewn_ply_header *header, const hewn_ply_element *element, const char *name)
+{
+    for (size_t i = 0; i < element->property_count; i++) {
+        const hewn_ply_property *property = &header->properties[element->first + i];
+        if (property->count_type == HEWN_PLY_NONE && hewn_word_is(property->name, name))
+            return i;
+    }
+    return HEWN_PLY_MOST;
 }
 
 static hewn_ply_role role_of(hewn_ply_kind kind, hewn_word name, bool list)
 {
-    static const char *const vertex_names[] = {"x", "y", "z", "nx", "ny", "nz"};
+    static const char *const vertex_names[] = {"x", "y", "z"};
     if (kind == HEWN_PLY_VERTICES && !list)
-        for (int i = 0; i < 6; i++)
+        for (int i = 0; i < 3; i++)
             if (hewn_word_is(name, vertex_names[i]))
                 return (hewn_ply_role)(HEWN_PLY_X + i);
     bool corners = hewn_word_is(name, "vertex_indices") || hewn_word_is(name, "vertex_index");
@@ -80,6 +80,8 @@ static hewn_result read_element(hewn_scan *scan, hewn_ply_header *header, hewn_e
     header->elements = items;
     hewn_ply_element element = {.first = header->property_count};
     hewn_word word = hewn_scan_word_in_line(scan);
+    if (header->element_count == HEWN_PLY_MOST)
+        return hewn_scan_fail(scan, word, "no more than 1000 elements are expected", error);
     if (hewn_word_is(word, "vertex"))
         element.kind = HEWN_PLY_VERTICES;
     else if (hewn_word_is(word, "face"))
@@ -115,16 +117,32 @@ static hewn_result read_property(hewn_scan *scan, hewn_ply_header *header, hewn_
     if (property.type == HEWN_PLY_NONE)
         return hewn_scan_fail(scan, word, "a type is expected", error);
     hewn_ply_element *element = &header->elements[header->element_count - 1];
-    property.role = role_of(element->kind, hewn_scan_word_in_line(scan), property.count_type != HEWN_PLY_NONE);
+    property.name = hewn_scan_word_in_line(scan);
+    property.role = role_of(element->kind, property.name, property.count_type != HEWN_PLY_NONE);
+    if (header->property_count == HEWN_PLY_MOST)
+        return hewn_scan_fail(scan, property.name, "no more than 1000 properties are expected", error);
     for (size_t i = 0; i < element->property_count; i++)
         if (property.role != HEWN_PLY_OTHER && header->properties[element->first + i].role == property.role)
-            return hewn_scan_fail(scan, word, "each property is expected once", error);
+            return hewn_scan_fail(scan, property.name, "each property is expected once", error);
     void *items = header->properties;
     HEWN_TRY(
         hewn_reserve(&items, &header->property_room, header->property_count + 1, sizeof(hewn_ply_property), error));
     header->properties = items;
     header->properties[header->property_count++] = property;
     element->property_count++;
+    return HEWN_OK;
+}
+
+static hewn_result keep_comment(hewn_scan *scan, hewn_ply_header *header, hewn_error *error)
+{
+    void *items = header->comments;
+    HEWN_TRY(hewn_reserve(&items, &header->comment_room, header->comment_count + 1, sizeof(hewn_word), error));
+    header->comments = items;
+    const char *end = memchr(scan->at, '\n', (size_t)(scan->end - scan->at));
+    hewn_word comment = {scan->at, end ? end : scan->end};
+    comment.end -= comment.end > comment.begin && comment.end[-1] == '\r';
+    comment.begin += comment.begin < comment.end;
+    header->comments[header->comment_count++] = comment;
     return HEWN_OK;
 }
 
@@ -144,12 +162,14 @@ static hewn_result read_header(hewn_scan *scan, hewn_ply_header *header, hewn_er
             HEWN_TRY(read_element(scan, header, error));
         } else if (hewn_word_is(word, "property")) {
             HEWN_TRY(read_property(scan, header, error));
+        } else if (hewn_word_is(word, "comment") || hewn_word_is(word, "obj_info")) {
+            HEWN_TRY(keep_comment(scan, header, error));
         } else if (hewn_word_is(word, "end_header") && has_format) {
             hewn_scan_line(scan);
             return HEWN_OK;
         } else if (scan->at == scan->end) {
             return hewn_fail_at(error, HEWN_BAD_INPUT, scan->name, scan->line, "the header has no format or no end");
-        } /* else a comment, obj_info, or one of the lines that some exporters write without either word */
+        } /* else one of the remarks that some exporters write without the word for it */
     }
 }
 
@@ -166,5 +186,6 @@ void hewn_ply_header_free(hewn_ply_header *header)
 {
     hewn_free(header->elements);
     hewn_free(header->properties);
+    hewn_free(header->comments);
     *header = (hewn_ply_header){0};
 }

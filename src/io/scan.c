@@ -6,31 +6,42 @@
 #include "base/error.h"
 #include "io/shim/number.h"
 
-static bool is_blank(char c)
+/* How long the line end at `at` is; 0 where there is none. */
+static size_t line_end(const char *at, const char *end)
 {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+    if (at >= end || !hewn_is_line_end(*at))
+        return 0;
+    return at[0] == '\r' && end - at >= 2 && at[1] == '\n' ? 2 : 1;
 }
 
 /* How long a backslash and the line end after it are; 0 where there is no such thing. */
 static size_t continuation(const hewn_scan *scan)
 {
-    size_t left = (size_t)(scan->end - scan->at);
-    if (left >= 2 && scan->at[0] == '\\' && scan->at[1] == '\n')
-        return 2;
-    if (left >= 3 && scan->at[0] == '\\' && scan->at[1] == '\r' && scan->at[2] == '\n')
-        return 3;
-    return 0;
+    size_t length = scan->at < scan->end && *scan->at == '\\' ? line_end(scan->at + 1, scan->end) : 0;
+    return length > 0 ? length + 1 : 0;
 }
 
-void hewn_scan_blanks(hewn_scan *scan)
+hewn_result hewn_scan_begin(hewn_scan *scan, const char *format, hewn_error *error)
+{
+    const unsigned char *at = (const unsigned char *)scan->at;
+    size_t length = (size_t)(scan->end - scan->at);
+    if (length >= 2 && ((at[0] == 0xfe && at[1] == 0xff) || (at[0] == 0xff && at[1] == 0xfe)))
+        return hewn_fail_at(error, HEWN_BAD_INPUT, scan->name, 1, "the text is in UTF-16; %s files are in UTF-8",
+                            format);
+    if (length >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0)
+        scan->at += 3;
+    return HEWN_OK;
+}
+
+void hewn_scan_blanks_and_lines(hewn_scan *scan)
 {
     while (scan->at < scan->end) {
-        size_t length = continuation(scan);
-        if (length > 0) {
+        size_t length = 0;
+        if (hewn_is_blank(*scan->at)) {
+            scan->at++;
+        } else if ((length = continuation(scan)) > 0) {
             scan->at += length;
             scan->line++;
-        } else if (is_blank(*scan->at)) {
-            scan->at++;
         } else {
             return;
         }
@@ -39,23 +50,34 @@ void hewn_scan_blanks(hewn_scan *scan)
 
 void hewn_scan_space(hewn_scan *scan)
 {
-    while (scan->at < scan->end && (is_blank(*scan->at) || *scan->at == '\n')) {
-        scan->line += *scan->at == '\n';
-        scan->at++;
+    while (scan->at < scan->end) {
+        size_t length = line_end(scan->at, scan->end);
+        if (length == 0 && !hewn_is_blank(*scan->at))
+            return;
+        scan->line += length > 0;
+        scan->at += length > 0 ? length : 1;
     }
+}
+
+void hewn_scan_all_space(hewn_scan *scan)
+{
+    for (hewn_scan_space(scan); scan->at < scan->end && *scan->at == '#'; hewn_scan_space(scan))
+        hewn_scan_line(scan);
 }
 
 void hewn_scan_line(hewn_scan *scan)
 {
-    const char *end = scan->at < scan->end ? memchr(scan->at, '\n', (size_t)(scan->end - scan->at)) : NULL;
-    scan->line += end != NULL;
-    scan->at = end ? end + 1 : scan->end;
+    while (scan->at < scan->end && !hewn_is_line_end(*scan->at))
+        scan->at++;
+    size_t length = line_end(scan->at, scan->end);
+    scan->line += length > 0;
+    scan->at += length;
 }
 
 static hewn_word take_word(hewn_scan *scan)
 {
     hewn_word word = {scan->at, scan->at};
-    while (word.end < scan->end && !is_blank(*word.end) && *word.end != '\n') {
+    while (word.end < scan->end && !hewn_is_blank(*word.end) && !hewn_is_line_end(*word.end)) {
         scan->at = word.end;
         if (*word.end == '\\' && continuation(scan) > 0)
             break;
@@ -77,10 +99,22 @@ hewn_word hewn_scan_word(hewn_scan *scan)
     return take_word(scan);
 }
 
-bool hewn_word_is(hewn_word word, const char *text)
+bool hewn_scan_double_in_line(hewn_scan *scan, double *out)
 {
-    size_t length = strlen(text);
-    return (size_t)(word.end - word.begin) == length && memcmp(word.begin, text, length) == 0;
+    hewn_scan_blanks(scan);
+    const char *next = hewn_number_parse_double(scan->at, scan->end, out);
+    bool good = next && hewn_scan_ends_word(scan, next);
+    scan->at = good ? next : scan->at;
+    return good;
+}
+
+bool hewn_scan_float_in_line(hewn_scan *scan, float *out)
+{
+    hewn_scan_blanks(scan);
+    const char *next = hewn_number_parse_float(scan->at, scan->end, out);
+    bool good = next && hewn_scan_ends_word(scan, next);
+    scan->at = good ? next : scan->at;
+    return good;
 }
 
 bool hewn_word_is_any_case(hewn_word word, const char *text)

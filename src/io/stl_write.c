@@ -1,11 +1,13 @@
-/* STL, binary: facets with their own corners and a normal each. */
+/* STL, binary: facets with their own corners and a normal each, and the face channel "attribute" (1 INT32) where it is
+ * that which the reader makes. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "io/bytes.h"
-#include "io/shim/number.h"
+#include "io/remark.h"
 #include "io/stream.h"
 
 enum { HEADER = 80, FACET = 50 };
@@ -31,54 +33,95 @@ static char *put_vector(const float *vector, char *to)
     return to;
 }
 
-static char *put_facet(const hewn_mesh_writing *job, uint64_t t, char *to)
+/* The face that a place in `corners` belongs to: the last one that begins there or before, of those with corners. */
+static uint64_t face_of(const hewn_writing *job, uint64_t place)
 {
-    const uint32_t *corner = job->mesh->indices + 3 * t;
-    const float *positions = job->mesh->positions;
-    const float *a = positions + 3 * (uint64_t)corner[0];
-    const float *b = positions + 3 * (uint64_t)corner[1];
-    const float *c = positions + 3 * (uint64_t)corner[2];
-    float normal[3];
-    facet_normal(a, b, c, normal);
-    to = put_vector(normal, to);
-    to = put_vector(a, to);
-    to = put_vector(b, to);
-    to = put_vector(c, to);
-    return hewn_put_u16(to, 0);
+    uint64_t low = 0, high = job->face_count;
+    if (!job->first)
+        return place / 3;
+    while (high - low > 1) {
+        uint64_t middle = low + (high - low) / 2;
+        if (job->first[middle] <= place)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
 }
 
-static hewn_result fits(const hewn_triangles *mesh, hewn_error *error)
+/* The two bytes after a facet. */
+static uint32_t attribute_of(const hewn_writing *job, uint64_t place)
 {
-    if (mesh->triangle_count > UINT32_MAX)
+    const hewn_channel *channel = job->own;
+    if (!channel)
+        return 0;
+    int32_t value = ((const int32_t *)channel->values)[face_of(job, place)];
+    return value >= 0 && value <= UINT16_MAX ? (uint32_t)value : 0;
+}
+
+static char *put_facet(const hewn_writing *job, uint64_t t, char *to)
+{
+    uint64_t place[3];
+    float normal[3], corner[3][3];
+    hewn_writing_triangle(job, t, place);
+    for (int k = 0; k < 3; k++) {
+        double position[3];
+        hewn_writing_position(job, job->corners[place[k]], position);
+        for (int axis = 0; axis < 3; axis++)
+            corner[k][axis] = (float)position[axis];
+    }
+    facet_normal(corner[0], corner[1], corner[2], normal);
+    to = put_vector(normal, to);
+    for (int k = 0; k < 3; k++)
+        to = put_vector(corner[k], to);
+    return hewn_put_u16(to, attribute_of(job, place[0]));
+}
+
+static hewn_result fits(const hewn_writing *job, hewn_error *error)
+{
+    if (job->triangle_count > UINT32_MAX)
         return hewn_fail(error, HEWN_LIMIT, "%llu triangles are more than the 4294967295 that an STL file can hold",
-                         (unsigned long long)mesh->triangle_count);
+                         (unsigned long long)job->triangle_count);
+    return HEWN_OK;
+}
+
+static hewn_result check_range(const hewn_writing *job, hewn_error *error)
+{
+    for (uint64_t i = 0; !job->all_float && i < 3 * job->vertex_count; i++)
+        if (fabs(job->doubles[i]) > (double)FLT_MAX)
+            return hewn_fail(error, HEWN_LIMIT, "vertex %llu lies too far out for STL's floats",
+                             (unsigned long long)(i / 3));
     return HEWN_OK;
 }
 
 /* The header's text must not begin with "solid", by which readers know the text form. */
-static hewn_result prepare(hewn_mesh_writing *job, hewn_error *error)
+static hewn_result prepare(hewn_writing *job, hewn_error *error)
 {
-    char metres[HEWN_NUMBER_ROOM], count[4];
-    *hewn_number_print_float(metres, (float)job->metres_per_unit) = '\0';
+    HEWN_TRY(check_range(job, error));
+    const hewn_channel *attribute = hewn_writing_channel(job, HEWN_DOMAIN_FACE, "attribute");
+    if (attribute && attribute->info.scalar == HEWN_SCALAR_INT32 && attribute->info.components == 1)
+        job->own = (void *)(uintptr_t)attribute; /* only read, and the model's: there is nothing to release */
+    char count[4];
     hewn_text head = {0};
-    hewn_text_print(&head, "binary STL, Hewn %s, 1 unit = %s m, %s up", hewn_version(), metres,
-                    hewn_axis_name(job->up));
+    hewn_text_print(&head, "binary STL, Hewn %s, ", hewn_version());
+    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL);
     while (head.length < HEADER && !head.failed)
         hewn_text_append_bytes(&head, "\0", 1);
     if (!head.failed)
         head.length = HEADER;
-    hewn_put_u32(count, (uint32_t)job->mesh->triangle_count);
+    hewn_put_u32(count, (uint32_t)job->triangle_count);
     hewn_text_append_bytes(&head, count, sizeof count);
     job->head = head.bytes;
     job->head_length = head.length;
     return hewn_text_status(&head, error);
 }
 
-static hewn_result write(const hewn_mesh_writing *job, hewn_output *output, hewn_error *error)
+static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_error *error)
 {
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
-    hewn_stream facets = {put_facet, job->mesh->triangle_count, FACET, 0, 1};
+    hewn_stream facets = {put_facet, job->triangle_count, FACET, NULL, 0, 1};
     return hewn_stream_write(job, &facets, output, error);
 }
 
-const hewn_mesh_writer hewn_stl_writer = {fits, prepare, write};
+const hewn_format_writer hewn_stl_writer = {
+    .triangles = true, .to_stdout = true, .fits = fits, .prepare = prepare, .write = write};

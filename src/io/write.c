@@ -1,46 +1,45 @@
 #include <math.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/progress.h"
-#include "hewn/io.h"
 #include "io/formats.h"
+#include "mesh/cut.h"
 
-const char *hewn_axis_name(hewn_axis axis)
-{
-    return axis == HEWN_AXIS_PLUS_Z ? "+Z" : axis == HEWN_AXIS_PLUS_X ? "+X" : "+Y";
-}
-
-hewn_mesh_format hewn_mesh_format_of(const char *path_or_extension)
-{
-    if (!path_or_extension)
-        return HEWN_MESH_UNKNOWN;
-    const char *slash = strrchr(path_or_extension, '/');
-    const char *base = slash ? slash + 1 : path_or_extension;
-    const char *dot = strrchr(base, '.');
-    const char *extension = dot ? dot + 1 : slash ? "" : base; /* "glb" alone is an extension, "out/glb" has none */
-    static const struct {
-        const char *extension;
-        hewn_mesh_format format;
-    } known[] = {{"glb", HEWN_MESH_GLB}, {"obj", HEWN_MESH_OBJ}, {"ply", HEWN_MESH_PLY}, {"stl", HEWN_MESH_STL}};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (strcasecmp(extension, known[i].extension) == 0)
-            return known[i].format;
-    return HEWN_MESH_UNKNOWN;
-}
-
-static const hewn_mesh_writer *writer_of(hewn_mesh_format format)
+static const hewn_format_writer *writer_of(hewn_mesh_format format)
 {
     switch (format) {
     case HEWN_MESH_GLB: return &hewn_glb_writer;
     case HEWN_MESH_OBJ: return &hewn_obj_writer;
     case HEWN_MESH_PLY: return &hewn_ply_writer;
     case HEWN_MESH_STL: return &hewn_stl_writer;
+    case HEWN_MESH_OFF: return &hewn_off_writer;
+    case HEWN_MESH_3MF: return &hewn_3mf_writer;
+    case HEWN_MESH_GLTF:
     case HEWN_MESH_UNKNOWN: break;
     }
     return NULL;
+}
+
+const hewn_channel *hewn_writing_channel(const hewn_writing *job, hewn_domain domain, const char *name)
+{
+    for (uint32_t i = 0; i < job->channel_count; i++)
+        if (job->channels[i].info.domain == domain && strcmp(job->channels[i].info.name, name) == 0)
+            return &job->channels[i];
+    return NULL;
+}
+
+double hewn_channel_number(const hewn_channel *channel, uint64_t index, uint32_t component)
+{
+    size_t at = (size_t)index * channel->info.components + component;
+    switch (channel->info.scalar) {
+    case HEWN_SCALAR_FLOAT: return (double)((const float *)channel->values)[at];
+    case HEWN_SCALAR_DOUBLE: return ((const double *)channel->values)[at];
+    case HEWN_SCALAR_UINT8: return ((const uint8_t *)channel->values)[at];
+    case HEWN_SCALAR_INT32: return ((const int32_t *)channel->values)[at];
+    }
+    return 0;
 }
 
 /* The name given, or the file's without folder and extension, with control characters blanked: names stand in lines. */
@@ -60,7 +59,17 @@ static char *object_name(const char *given, const char *path)
     return name;
 }
 
-static hewn_result check_numbers(const hewn_triangles *mesh, hewn_error *error)
+/* --- checks ------------------------------------------------------------------------------------------------------- */
+
+static hewn_result check_size(const hewn_writing *job, const hewn_format_writer *writer, hewn_error *error)
+{
+    if (job->vertex_count > (uint64_t)UINT32_MAX + 1 || job->face_count > UINT64_MAX / 64)
+        return hewn_fail(error, HEWN_LIMIT, "%llu vertices and %llu faces are more than indices can name",
+                         (unsigned long long)job->vertex_count, (unsigned long long)job->face_count);
+    return writer->fits ? writer->fits(job, error) : HEWN_OK;
+}
+
+static hewn_result check_triangles(const hewn_triangles *mesh, hewn_error *error)
 {
     if ((mesh->vertex_count > 0 && !mesh->positions) || (mesh->triangle_count > 0 && !mesh->indices))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "triangles without positions or indices");
@@ -68,26 +77,42 @@ static hewn_result check_numbers(const hewn_triangles *mesh, hewn_error *error)
         if (mesh->indices[i] >= mesh->vertex_count)
             return hewn_fail(error, HEWN_BAD_INPUT, "triangle %llu names vertex %u, but there are %llu vertices",
                              (unsigned long long)(i / 3), mesh->indices[i], (unsigned long long)mesh->vertex_count);
-    for (uint64_t i = 0; i < 3 * mesh->vertex_count; i++) {
+    for (uint64_t i = 0; i < 3 * mesh->vertex_count; i++)
         if (!isfinite(mesh->positions[i]))
             return hewn_fail(error, HEWN_BAD_INPUT, "the position of vertex %llu is not finite",
                              (unsigned long long)(i / 3));
-        if (mesh->normals && !isfinite(mesh->normals[i]))
-            return hewn_fail(error, HEWN_BAD_INPUT, "the normal of vertex %llu is not finite",
-                             (unsigned long long)(i / 3));
-    }
     return HEWN_OK;
 }
 
-static hewn_result check_size(const hewn_triangles *mesh, const hewn_mesh_writer *writer, hewn_error *error)
+/* Numbers in files are finite: readers elsewhere take anything else ill. */
+static hewn_result check_channel(const hewn_channel *channel, uint64_t count, hewn_error *error)
 {
-    if (mesh->vertex_count > (uint64_t)UINT32_MAX + 1 || mesh->triangle_count > UINT64_MAX / 64)
-        return hewn_fail(error, HEWN_LIMIT, "%llu vertices and %llu triangles are more than indices can name",
-                         (unsigned long long)mesh->vertex_count, (unsigned long long)mesh->triangle_count);
-    return writer->fits ? writer->fits(mesh, error) : HEWN_OK;
+    bool real = channel->info.scalar == HEWN_SCALAR_FLOAT || channel->info.scalar == HEWN_SCALAR_DOUBLE;
+    uint32_t components = channel->info.components;
+    for (uint64_t i = 0; real && i < count; i++)
+        for (uint32_t k = 0; k < components; k++)
+            if (!isfinite(hewn_channel_number(channel, i, k)))
+                return hewn_fail(error, HEWN_BAD_INPUT, "\"%s\" of %s %llu is not finite", channel->info.name,
+                                 channel->info.domain == HEWN_DOMAIN_VERT     ? "vertex"
+                                 : channel->info.domain == HEWN_DOMAIN_CORNER ? "corner"
+                                                                              : "face",
+                                 (unsigned long long)i);
+    return HEWN_OK;
 }
 
-static hewn_result write_file(const hewn_mesh_writer *writer, const hewn_mesh_writing *job, const char *path,
+static hewn_result check_channels(const hewn_writing *job, hewn_error *error)
+{
+    const uint64_t counts[] = {[HEWN_DOMAIN_VERT] = job->vertex_count,
+                               [HEWN_DOMAIN_CORNER] = job->corner_count,
+                               [HEWN_DOMAIN_FACE] = job->face_count};
+    for (uint32_t i = 0; i < job->channel_count; i++)
+        HEWN_TRY(check_channel(&job->channels[i], counts[job->channels[i].info.domain], error));
+    return HEWN_OK;
+}
+
+/* --- writing ------------------------------------------------------------------------------------------------------ */
+
+static hewn_result write_file(const hewn_format_writer *writer, const hewn_writing *job, const char *path,
                               hewn_error *error)
 {
     hewn_output *output;
@@ -100,33 +125,101 @@ static hewn_result write_file(const hewn_mesh_writer *writer, const hewn_mesh_wr
     return result;
 }
 
-hewn_result hewn_mesh_write(const hewn_triangles *triangles, const char *path, const hewn_mesh_write_desc *desc,
-                            hewn_error *error)
+static hewn_result find_writer(const char *path, hewn_mesh_format format, const hewn_format_writer **out,
+                               hewn_error *error)
 {
-    static const hewn_mesh_write_desc defaults;
-    const hewn_mesh_write_desc *wanted = desc ? desc : &defaults;
-    hewn_mesh_format format = wanted->format != HEWN_MESH_UNKNOWN ? wanted->format : hewn_mesh_format_of(path);
-    const hewn_mesh_writer *writer = writer_of(format);
-    if (!writer)
-        return hewn_fail_at(error, HEWN_INVALID_ARGUMENT, path, 0,
-                            "no known mesh format; known extensions are .glb, .obj, .ply and .stl");
-    if (format == HEWN_MESH_GLB && strcmp(path, "-") == 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB cannot be written to standard output");
-    double metres = wanted->metres_per_unit == 0 ? 1 : wanted->metres_per_unit;
-    if (!(metres > 0 && isfinite(metres)))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%g metres a unit make no sense", metres);
-    HEWN_TRY(check_size(triangles, writer, error));
-    hewn_mesh_writing job = {
-        .mesh = triangles, .metres_per_unit = metres, .up = wanted->up, .progress = wanted->progress};
-    char *name = object_name(wanted->name, path);
-    job.name = name;
+    *out = writer_of(format != HEWN_MESH_UNKNOWN ? format : hewn_mesh_format_of(path));
+    if (!*out)
+        return hewn_fail_at(
+            error, HEWN_INVALID_ARGUMENT, path, 0,
+            "no format that can be written; known extensions are .glb, .obj, .ply, .stl, .off and .3mf");
+    if (!(*out)->to_stdout && strcmp(path, "-") == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "this format cannot be written to standard output");
+    return HEWN_OK;
+}
+
+static hewn_result prepare_and_write(hewn_writing *job, const hewn_format_writer *writer, const char *path,
+                                     const hewn_write_desc *desc, hewn_error *error)
+{
+    char *name = object_name(desc->name, path);
+    job->name = name;
     hewn_result result =
-        name ? check_numbers(triangles, error) : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
+        name ? check_channels(job, error) : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
+    if (result == HEWN_OK && writer->prepare)
+        result = writer->prepare(job, error);
     if (result == HEWN_OK)
-        result = writer->prepare(&job, error);
-    if (result == HEWN_OK)
-        result = write_file(writer, &job, path, error);
-    hewn_free(job.head);
+        result = write_file(writer, job, path, error);
+    if (writer->release)
+        writer->release(job);
+    hewn_free(job->head);
     hewn_free(name);
+    return result;
+}
+
+hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *path, const hewn_write_desc *desc,
+                                 hewn_error *error)
+{
+    static const hewn_write_desc defaults;
+    const hewn_write_desc *wanted = desc ? desc : &defaults;
+    const hewn_format_writer *writer;
+    HEWN_TRY(find_writer(path, wanted->format, &writer, error));
+    hewn_channel normals = {.info = {"normal", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3}, .values = triangles->normals};
+    hewn_writing job = {.vertex_count = triangles->vertex_count,
+                        .face_count = triangles->triangle_count,
+                        .corner_count = 3 * triangles->triangle_count,
+                        .floats = triangles->positions,
+                        .all_float = true,
+                        .corners = triangles->indices,
+                        .triangle_count = triangles->triangle_count,
+                        .channels = &normals,
+                        .channel_count = triangles->normals ? 1 : 0,
+                        .unit = wanted->unit ? wanted->unit : hewn_unit_at(0),
+                        .up = wanted->up,
+                        .up_known = true,
+                        .progress = wanted->progress};
+    HEWN_TRY(check_size(&job, writer, error));
+    HEWN_TRY(check_triangles(triangles, error));
+    return prepare_and_write(&job, writer, path, wanted, error);
+}
+
+static bool is_all_float(const hewn_model *model)
+{
+    for (uint64_t i = 0; i < 3 * model->vertex_count; i++)
+        if ((double)(float)model->positions[i] != model->positions[i])
+            return false;
+    return true;
+}
+
+hewn_result hewn_model_write(const hewn_model *model, const char *path, const hewn_write_desc *desc, hewn_error *error)
+{
+    static const hewn_write_desc defaults;
+    const hewn_write_desc *wanted = desc ? desc : &defaults;
+    const hewn_format_writer *writer;
+    HEWN_TRY(find_writer(path, wanted->format, &writer, error));
+    HEWN_TRY(hewn_model_check(model, error));
+    hewn_writing job = {.vertex_count = model->vertex_count,
+                        .face_count = model->face_count,
+                        .corner_count = hewn_model_corner_count(model),
+                        .doubles = model->positions,
+                        .all_float = is_all_float(model),
+                        .first = model->first,
+                        .corners = model->corners,
+                        .triangle_count = model->face_count,
+                        .channels = model->channels,
+                        .channel_count = model->channel_count,
+                        .unit = model->unit ? model->unit : wanted->unit,
+                        .up = model->up_known ? model->up : wanted->up,
+                        .up_known = model->up_known || wanted->unit,
+                        .progress = wanted->progress};
+    uint32_t *cut = NULL;
+    if (writer->triangles && model->first) {
+        hewn_polygons polygons = hewn_model_polygons(model);
+        HEWN_TRY(hewn_cut_polygons(&polygons, &cut, &job.triangle_count, wanted->progress, error));
+        job.cut = cut;
+    }
+    hewn_result result = check_size(&job, writer, error);
+    if (result == HEWN_OK)
+        result = prepare_and_write(&job, writer, path, wanted, error);
+    hewn_free(cut);
     return result;
 }

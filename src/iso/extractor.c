@@ -78,30 +78,43 @@ static hewn_result create_table(hewn_extractor *extractor, hewn_error *error)
     return HEWN_OK;
 }
 
-static hewn_result create_parts(hewn_extractor *extractor, const hewn_field *field, hewn_node root, hewn_error *error)
+static hewn_result create_parts(hewn_extractor *extractor, const hewn_field *field, hewn_node root,
+                                hewn_numbers numbers, hewn_error *error)
 {
-    HEWN_TRY(hewn_code_create(extractor->device, field, root, &extractor->code, error));
+    HEWN_TRY(hewn_code_create_with(extractor->device, field, root, numbers, &extractor->code, error));
     HEWN_TRY(hewn_scan_create(extractor->device, &extractor->scan, error));
     HEWN_TRY(create_table(extractor, error));
     HEWN_TRY(create_fixed_programs(extractor, error));
     return create_field_programs(extractor, error);
 }
 
-hewn_result hewn_extractor_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_extractor **out,
-                                  hewn_error *error)
+hewn_result hewn_extractor_create_with(hewn_device *device, const hewn_field *field, hewn_node root,
+                                       hewn_numbers numbers, hewn_extractor **out, hewn_error *error)
 {
     *out = NULL;
     hewn_extractor *extractor = hewn_alloc_zero(1, sizeof *extractor);
     if (!extractor)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an extractor");
     extractor->device = device;
-    hewn_result result = create_parts(extractor, field, root, error);
+    hewn_result result = create_parts(extractor, field, root, numbers, error);
     if (result != HEWN_OK) {
         hewn_extractor_destroy(&extractor);
         return result;
     }
     *out = extractor;
     return HEWN_OK;
+}
+
+hewn_result hewn_extractor_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_extractor **out,
+                                  hewn_error *error)
+{
+    return hewn_extractor_create_with(device, field, root, HEWN_NUMBERS_AUTO, out, error);
+}
+
+hewn_result hewn_extractor_renumber(hewn_extractor *extractor, const hewn_field *field, hewn_node root, bool *taken,
+                                    hewn_error *error)
+{
+    return hewn_code_renumber(extractor->code, field, root, taken, error);
 }
 
 void hewn_extractor_destroy(hewn_extractor **extractor_place)

@@ -17,6 +17,10 @@ struct hewn_extractor {
     hewn_program *compact, *link, *classify, *spread, *triangles; /* the same for all */
 };
 
+/* As hewn_extractor_create(), with a say in where the field's numbers live. */
+hewn_result hewn_extractor_create_with(hewn_device *device, const hewn_field *field, hewn_node root,
+                                       hewn_numbers numbers, hewn_extractor **out, hewn_error *error);
+
 /* Buffers that one run needs, all freed together. */
 #define HEWN_WORKSPACE_MOST 48
 typedef struct hewn_workspace {

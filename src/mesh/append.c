@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/alloc.h"
+
 /* Bounds and attributes of the mesh that grows, before it does. */
 typedef struct mesh_bounds {
     uint32_t verts, halves, faces, attributes;
@@ -25,8 +27,40 @@ static hewn_result join_attributes(hewn_mesh *mesh, const hewn_mesh *other, hewn
     return HEWN_OK;
 }
 
+/* Joins the names of values; the maps (one for each attribute of `other`, or NULL) are the caller's also after an
+ * error. */
+static hewn_result join_names(hewn_mesh *mesh, const hewn_mesh *other, int32_t ***maps, hewn_error *error)
+{
+    *maps = hewn_alloc_zero(other->attribute_count, sizeof **maps);
+    if (!*maps)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory appending a mesh");
+    for (uint32_t i = 0; i < other->attribute_count; i++) {
+        const mesh_attribute *from = &other->attributes[i];
+        uint32_t at;
+        if (from->name_count > 0 && hewn_mesh_find_attribute(mesh, from->info.domain, from->info.name, &at))
+            HEWN_TRY(hewn_mesh_join_names(&mesh->attributes[at], from, *maps + i, error));
+    }
+    return HEWN_OK;
+}
+
+static void free_maps(int32_t **maps, uint32_t count)
+{
+    for (uint32_t i = 0; maps && i < count; i++)
+        hewn_free(maps[i]);
+    hewn_free((void *)maps);
+}
+
+/* Labels of the new elements: values that have names in `other` become what is called so here. */
+static void map_values(mesh_attribute *attribute, uint32_t old, size_t bytes, const int32_t *map, uint32_t names)
+{
+    int32_t *values = (int32_t *)(void *)(attribute->data + old * attribute->stride);
+    for (size_t i = 0; i < bytes / sizeof *values; i++)
+        if (values[i] >= 0 && (uint32_t)values[i] < names)
+            values[i] = map[values[i]];
+}
+
 /* Values of the new elements: those of `other`, or zero. */
-static void fill_values(hewn_mesh *mesh, const hewn_mesh *other, const mesh_bounds *before)
+static void fill_values(hewn_mesh *mesh, const hewn_mesh *other, const mesh_bounds *before, int32_t *const *maps)
 {
     for (uint32_t i = 0; i < mesh->attribute_count; i++) {
         mesh_attribute *attribute = &mesh->attributes[i];
@@ -38,10 +72,13 @@ static void fill_values(hewn_mesh *mesh, const hewn_mesh *other, const mesh_boun
         uint32_t from;
         if (bytes == 0)
             continue;
-        if (hewn_mesh_find_attribute(other, domain, attribute->info.name, &from))
+        bool found = hewn_mesh_find_attribute(other, domain, attribute->info.name, &from);
+        if (found)
             memcpy(attribute->data + old * attribute->stride, other->attributes[from].data, bytes);
         else
             memset(attribute->data + old * attribute->stride, 0, bytes);
+        if (found && maps[from])
+            map_values(attribute, old, bytes, maps[from], other->attributes[from].name_count);
     }
 }
 
@@ -73,16 +110,21 @@ hewn_result hewn_mesh_append(hewn_mesh *mesh, const hewn_mesh *other, hewn_error
     mesh_bounds base = {mesh->vert_bound, mesh->half_bound, mesh->face_bound, mesh->attribute_count};
     mesh_bounds more = {other->vert_bound, other->half_bound, other->face_bound, other->attribute_count};
     uint32_t verts = other->live_verts, edges = other->live_edges, faces = other->live_faces;
+    int32_t **maps = NULL;
     hewn_result result = hewn_mesh_reserve(mesh, more.verts, more.halves / 2, more.faces, error);
     if (result == HEWN_OK)
         result = join_attributes(mesh, other, error);
+    if (result == HEWN_OK)
+        result = join_names(mesh, other, &maps, error);
     if (result != HEWN_OK) {
+        free_maps(maps, more.attributes);
         while (mesh->attribute_count > base.attributes)
             hewn_mesh_remove_attribute(mesh, mesh->attribute_count - 1);
         return result;
     }
     copy_elements(mesh, other, &base, &more);
-    fill_values(mesh, other, &base);
+    fill_values(mesh, other, &base, maps);
+    free_maps(maps, more.attributes);
     mesh->live_verts += verts;
     mesh->live_edges += edges;
     mesh->live_faces += faces;

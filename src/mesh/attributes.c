@@ -7,7 +7,7 @@
 
 enum { MOST_COMPONENTS = 16 };
 
-static size_t scalar_size(hewn_scalar scalar)
+size_t hewn_scalar_size(hewn_scalar scalar)
 {
     switch (scalar) {
     case HEWN_SCALAR_FLOAT: return sizeof(float);
@@ -25,7 +25,7 @@ static hewn_result check_info(const hewn_mesh *mesh, const hewn_attribute_info *
     if (info->components < 1 || info->components > MOST_COMPONENTS)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "attribute \"%s\" cannot have %u components, only 1 to %d",
                          info->name, info->components, MOST_COMPONENTS);
-    if (scalar_size(info->scalar) == 0 || (unsigned)info->domain > HEWN_DOMAIN_FACE)
+    if (hewn_scalar_size(info->scalar) == 0 || (unsigned)info->domain > HEWN_DOMAIN_FACE)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "attribute \"%s\" has an unknown domain or scalar", info->name);
     if (hewn_mesh_find_attribute(mesh, info->domain, info->name, NULL))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh has an attribute \"%s\" there already", info->name);
@@ -46,7 +46,7 @@ hewn_result hewn_mesh_add_attribute(hewn_mesh *mesh, const hewn_attribute_info *
     HEWN_TRY(check_info(mesh, info, error));
     HEWN_TRY(hewn_reserve((void **)&mesh->attributes, &mesh->attribute_capacity, (size_t)mesh->attribute_count + 1,
                           sizeof *mesh->attributes, error));
-    mesh_attribute attribute = {.info = *info, .stride = scalar_size(info->scalar) * info->components};
+    mesh_attribute attribute = {.info = *info, .stride = hewn_scalar_size(info->scalar) * info->components};
     bool real = info->scalar == HEWN_SCALAR_FLOAT || info->scalar == HEWN_SCALAR_DOUBLE;
     attribute.direction = real && info->components == 3 && strcmp(info->name, "normal") == 0;
     char *name = hewn_strdup(info->name);
@@ -70,6 +70,7 @@ void hewn_mesh_remove_attribute(hewn_mesh *mesh, uint32_t attribute)
         return;
     hewn_free((void *)mesh->attributes[attribute].info.name);
     hewn_free(mesh->attributes[attribute].data);
+    hewn_mesh_clear_names(&mesh->attributes[attribute]);
     mesh->attribute_count--;
     memmove(mesh->attributes + attribute, mesh->attributes + attribute + 1,
             (mesh->attribute_count - attribute) * sizeof *mesh->attributes);
@@ -107,6 +108,25 @@ const void *hewn_mesh_attribute_read(const hewn_mesh *mesh, uint32_t attribute, 
 void *hewn_mesh_attribute_at(hewn_mesh *mesh, uint32_t attribute, uint32_t element)
 {
     return (void *)hewn_mesh_attribute_read(mesh, attribute, element);
+}
+
+void hewn_mesh_read_direction(const mesh_attribute *attribute, uint32_t element, double out[3])
+{
+    const unsigned char *at = attribute->data + element * attribute->stride;
+    for (int k = 0; k < 3; k++)
+        out[k] = attribute->info.scalar == HEWN_SCALAR_FLOAT ? (double)((const float *)(const void *)at)[k]
+                                                             : ((const double *)(const void *)at)[k];
+}
+
+void hewn_mesh_write_direction(mesh_attribute *attribute, uint32_t element, const double direction[3])
+{
+    unsigned char *at = attribute->data + element * attribute->stride;
+    for (int k = 0; k < 3; k++) {
+        if (attribute->info.scalar == HEWN_SCALAR_FLOAT)
+            ((float *)(void *)at)[k] = (float)direction[k];
+        else
+            ((double *)(void *)at)[k] = direction[k];
+    }
 }
 
 /* --- what operations do to values --------------------------------------------------------------------------------- */

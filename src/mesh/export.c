@@ -4,13 +4,43 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "mesh/cut.h"
 
-static bool all_triangles(const hewn_mesh *mesh)
+/* The faces of a mesh one after the other, over its vertices as they are numbered. */
+typedef struct face_list {
+    hewn_polygons polygons;
+    uint64_t *first;
+    uint32_t *corners;
+} face_list;
+
+static void free_list(face_list *list)
 {
-    bool triangles = true;
-    for (uint32_t f = 0; f < mesh->face_bound && triangles; f++)
-        triangles = !mesh_has_face(mesh, f) || mesh_in_triangle(mesh, mesh->face_half[f]);
-    return triangles;
+    hewn_free(list->first);
+    hewn_free(list->corners);
+}
+
+static hewn_result list_faces(const hewn_mesh *mesh, face_list *out, hewn_error *error)
+{
+    uint64_t count = 0, at = 0, face = 0;
+    for (uint32_t h = 0; h < mesh->half_bound; h++)
+        count += mesh->face[h] != HEWN_NONE;
+    out->first = hewn_alloc(mesh->live_faces + 1ull, sizeof *out->first);
+    out->corners = hewn_alloc(count, sizeof *out->corners);
+    if (!out->first || !out->corners)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %u faces", mesh->live_faces);
+    for (uint32_t f = 0; f < mesh->face_bound; f++) {
+        if (!mesh_has_face(mesh, f))
+            continue;
+        out->first[face++] = at;
+        uint32_t h = mesh->face_half[f];
+        do {
+            out->corners[at++] = mesh->head[h];
+            h = mesh->next[h];
+        } while (h != mesh->face_half[f]);
+    }
+    out->first[face] = at;
+    out->polygons = (hewn_polygons){mesh->vert_bound, mesh->position, face, out->first, out->corners};
+    return HEWN_OK;
 }
 
 /* Vertices get new numbers in `numbers`, without the holes. */
@@ -42,32 +72,22 @@ static hewn_result write_verts(const hewn_mesh *mesh, uint32_t *numbers, hewn_tr
     return HEWN_OK;
 }
 
-static void write_faces(const hewn_mesh *mesh, const uint32_t *numbers, hewn_triangles *out)
-{
-    uint32_t *corner = out->indices;
-    for (uint32_t f = 0; f < mesh->face_bound; f++) {
-        if (!mesh_has_face(mesh, f))
-            continue;
-        uint32_t h = mesh->face_half[f];
-        for (int i = 0; i < 3; i++, h = mesh->next[h])
-            *corner++ = numbers[mesh->head[h]];
-    }
-}
-
-static hewn_result write_all(const hewn_mesh *mesh, hewn_triangles *out, hewn_error *error)
+/* `triangles` are positions in the list of corners. */
+static hewn_result write_all(const hewn_mesh *mesh, const face_list *list, const uint32_t *triangles, uint64_t count,
+                             hewn_triangles *out, hewn_error *error)
 {
     uint32_t *numbers = hewn_alloc(mesh->vert_bound, sizeof *numbers);
-    *out = (hewn_triangles){.vertex_count = mesh->live_verts, .triangle_count = mesh->live_faces};
+    *out = (hewn_triangles){.vertex_count = mesh->live_verts, .triangle_count = count};
     out->positions = hewn_alloc(mesh->live_verts, 3 * sizeof *out->positions);
-    out->indices = hewn_alloc(mesh->live_faces, 3 * sizeof *out->indices);
+    out->indices = hewn_alloc(count, 3 * sizeof *out->indices);
     hewn_result result = HEWN_OK;
     if (!numbers || !out->positions || !out->indices)
-        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %u triangles", mesh->live_faces);
+        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu triangles", (unsigned long long)count);
     if (result == HEWN_OK)
         result = write_verts(mesh, numbers, out, error);
-    if (result == HEWN_OK)
-        write_faces(mesh, numbers, out);
-    else
+    for (uint64_t i = 0; i < 3 * count && result == HEWN_OK; i++)
+        out->indices[i] = numbers[list->corners[triangles[i]]];
+    if (result != HEWN_OK)
         hewn_triangles_destroy(out);
     hewn_free(numbers);
     return result;
@@ -76,13 +96,15 @@ static hewn_result write_all(const hewn_mesh *mesh, hewn_triangles *out, hewn_er
 hewn_result hewn_mesh_to_triangles(const hewn_mesh *mesh, hewn_triangles *out, hewn_error *error)
 {
     *out = (hewn_triangles){0};
-    if (all_triangles(mesh))
-        return write_all(mesh, out, error);
-    hewn_mesh *cut;
-    HEWN_TRY(hewn_mesh_duplicate(mesh, &cut, error));
-    hewn_result result = hewn_mesh_triangulate(cut, error);
+    face_list list = {0};
+    uint32_t *triangles = NULL;
+    uint64_t count = 0;
+    hewn_result result = list_faces(mesh, &list, error);
     if (result == HEWN_OK)
-        result = write_all(cut, out, error);
-    hewn_mesh_destroy(&cut);
+        result = hewn_cut_polygons(&list.polygons, &triangles, &count, NULL, error);
+    if (result == HEWN_OK)
+        result = write_all(mesh, &list, triangles, count, out, error);
+    hewn_free(triangles);
+    free_list(&list);
     return result;
 }

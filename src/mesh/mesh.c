@@ -237,6 +237,8 @@ size_t hewn_mesh_bytes(const hewn_mesh *mesh)
                           : attribute->info.domain == HEWN_DOMAIN_FACE ? mesh->face_capacity
                                                                        : mesh->half_capacity;
         bytes += capacity * attribute->stride + strlen(attribute->info.name) + 1;
+        for (uint32_t name = 0; name < attribute->name_count; name++)
+            bytes += sizeof(char *) + strlen(attribute->names[name]) + 1;
     }
     return bytes;
 }

@@ -18,6 +18,8 @@ typedef struct mesh_attribute {
     unsigned char *data;
     size_t stride;
     bool direction; /* "normal" with three floating-point components: kept at unit length */
+    char **names;   /* of the values 0 to name_count - 1, owned; INT32 only */
+    uint32_t name_count;
 } mesh_attribute;
 
 struct hewn_mesh {
@@ -111,6 +113,18 @@ void hewn_mesh_copy_values(hewn_mesh *mesh, hewn_domain domain, uint32_t to, uin
 void hewn_mesh_blend_values(hewn_mesh *mesh, hewn_domain domain, uint32_t to, const uint32_t *from,
                             const double *weights, uint32_t count);
 bool hewn_mesh_has_values(const hewn_mesh *mesh, hewn_domain domain);
+
+/* Three components of a normal; `attribute` must be a direction. */
+void hewn_mesh_read_direction(const mesh_attribute *attribute, uint32_t element, double out[3]);
+void hewn_mesh_write_direction(mesh_attribute *attribute, uint32_t element, const double direction[3]);
+
+/* Frees the names of an attribute's values. */
+void hewn_mesh_clear_names(mesh_attribute *attribute);
+
+/* Adds the names of `from` that `attribute` lacks; (*map)[i] becomes the value here of what is value i there. `*map` is
+ * the caller's, NULL where all values stay as they are. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_mesh_join_names(mesh_attribute *attribute, const mesh_attribute *from, int32_t **map,
+                                 hewn_error *error);
 
 static inline uint32_t mesh_domain_bound(const hewn_mesh *mesh, hewn_domain domain)
 {

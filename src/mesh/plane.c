@@ -6,8 +6,8 @@
 
 /* --- projecting --------------------------------------------------------------------------------------------------- */
 
-/* The exponent that brings all coordinates to at most 1 in size. */
-static int common_exponent(const double *const *corners, uint32_t count)
+/* The power of two that brings all coordinates to at most 1 in size; tiny ones as near to it as one double can. */
+static double common_scale(const double *const *corners, uint32_t count)
 {
     double most = 0;
     for (uint32_t i = 0; i < count; i++)
@@ -15,21 +15,21 @@ static int common_exponent(const double *const *corners, uint32_t count)
             most = fmax(most, fabs(corners[i][k]));
     int exponent = 0;
     frexp(most, &exponent);
-    return most > 0 ? -exponent : 0;
+    return most > 0 ? ldexp(1, exponent < -1022 ? 1022 : -exponent) : 1;
 }
 
 /* Newell's normal of the scaled polygon, coordinates taken from its first corner. */
-static void newell(const double *const *corners, uint32_t count, int exponent, double normal[3])
+static void newell(const double *const *corners, uint32_t count, double scale, double normal[3])
 {
     double origin[3], at[3], next[3];
     normal[0] = normal[1] = normal[2] = 0;
     for (int k = 0; k < 3; k++) {
-        origin[k] = ldexp(corners[0][k], exponent);
+        origin[k] = corners[0][k] * scale;
         at[k] = 0;
     }
     for (uint32_t i = 1; i <= count; i++) {
         for (int k = 0; k < 3; k++)
-            next[k] = ldexp(corners[i < count ? i : 0][k], exponent) - origin[k];
+            next[k] = corners[i < count ? i : 0][k] * scale - origin[k];
         for (int k = 0; k < 3; k++) {
             int u = (k + 1) % 3, v = (k + 2) % 3;
             normal[k] += (at[u] - next[u]) * (at[v] + next[v]);
@@ -41,9 +41,8 @@ static void newell(const double *const *corners, uint32_t count, int exponent, d
 
 void hewn_plane_project(const double *const *points, uint32_t count, uint32_t point_count, double *out)
 {
-    int exponent = common_exponent(points, point_count);
-    double normal[3];
-    newell(points, count, exponent, normal);
+    double normal[3], scale = common_scale(points, point_count);
+    newell(points, count, scale, normal);
     int axis = 0;
     for (int k = 1; k < 3; k++)
         axis = fabs(normal[k]) > fabs(normal[axis]) ? k : axis;
@@ -54,8 +53,8 @@ void hewn_plane_project(const double *const *points, uint32_t count, uint32_t po
         v = swap;
     }
     for (uint32_t i = 0; i < point_count; i++) {
-        out[2 * (size_t)i] = ldexp(points[i][u], exponent);
-        out[2 * (size_t)i + 1] = ldexp(points[i][v], exponent);
+        out[2 * (size_t)i] = points[i][u] * scale;
+        out[2 * (size_t)i + 1] = points[i][v] * scale;
     }
 }
 

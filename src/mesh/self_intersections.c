@@ -1,6 +1,5 @@
 #include "mesh/self_intersections.h"
 
-#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +8,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "geom/bvh.h"
-#include "geom/triangle_meet.h"
+#include "mesh/check_faces.h"
 
 /* Fewer triangles than ALONE are not worth another thread. A slice of blocks (of four triangles) is what is done
  * between two looks at the progress callback, a chunk what a thread takes at a time. */
@@ -24,43 +23,6 @@ static uint64_t least(uint64_t a, uint64_t b)
 
 /* --- input -------------------------------------------------------------------------------------------------------- */
 
-static hewn_result check_positions(const hewn_triangle_view *mesh, hewn_error *error)
-{
-    uint64_t count = mesh->vertex_count, bad = count;
-#pragma omp parallel for schedule(static) reduction(min : bad) if (count >= ALONE)
-    for (uint64_t v = 0; v < count; v++) {
-        double p[3];
-        hewn_triangle_point(mesh, (uint32_t)v, p);
-        if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])))
-            bad = least(bad, v);
-    }
-    if (bad < count) {
-        double p[3];
-        hewn_triangle_point(mesh, (uint32_t)bad, p);
-        return hewn_fail(error, HEWN_BAD_INPUT, "vertex %llu lies at (%g, %g, %g), which is not finite",
-                         (unsigned long long)bad, p[0], p[1], p[2]);
-    }
-    return HEWN_OK;
-}
-
-static hewn_result check_indices(const hewn_triangle_view *mesh, hewn_error *error)
-{
-    uint64_t count = mesh->triangle_count, bad = count;
-#pragma omp parallel for schedule(static) reduction(min : bad) if (count >= ALONE)
-    for (uint64_t t = 0; t < count; t++) {
-        const uint32_t *corner = mesh->corners + 3 * t;
-        if (corner[0] >= mesh->vertex_count || corner[1] >= mesh->vertex_count || corner[2] >= mesh->vertex_count)
-            bad = least(bad, t);
-    }
-    if (bad < count) {
-        const uint32_t *corner = mesh->corners + 3 * bad;
-        return hewn_fail(error, HEWN_BAD_INPUT, "triangle %llu has the corners %u, %u, %u, but there are %llu vertices",
-                         (unsigned long long)bad, corner[0], corner[1], corner[2],
-                         (unsigned long long)mesh->vertex_count);
-    }
-    return HEWN_OK;
-}
-
 static hewn_result check_mesh(const hewn_triangle_view *mesh, uint64_t max_pairs, uint32_t (*pairs)[2],
                               hewn_error *error)
 {
@@ -73,8 +35,8 @@ static hewn_result check_mesh(const hewn_triangle_view *mesh, uint64_t max_pairs
     if (mesh->vertex_count > UINT32_MAX || mesh->triangle_count > UINT32_MAX)
         return hewn_fail(error, HEWN_LIMIT, "%llu vertices and %llu triangles are more than can be examined",
                          (unsigned long long)mesh->vertex_count, (unsigned long long)mesh->triangle_count);
-    HEWN_TRY(check_positions(mesh, error));
-    return check_indices(mesh, error);
+    HEWN_TRY(hewn_check_positions(mesh->doubles, mesh->floats, mesh->vertex_count, error));
+    return hewn_check_triangle_indices(mesh->corners, mesh->triangle_count, mesh->vertex_count, error);
 }
 
 /* --- counting ----------------------------------------------------------------------------------------------------- */
@@ -85,14 +47,6 @@ typedef struct search {
     hewn_bvh bvh;
     _Atomic uint32_t *rows; /* how many pairs each row has; NULL where no pairs are asked for */
 } search;
-
-static void load_facet(const hewn_triangle_view *mesh, uint32_t triangle, hewn_facet *facet)
-{
-    for (int k = 0; k < 3; k++) {
-        facet->index[k] = mesh->corners[3 * (uint64_t)triangle + k];
-        hewn_triangle_point(mesh, facet->index[k], facet->point[k]);
-    }
-}
 
 static void slot_box(const hewn_boxes4 *boxes, int k, float lo[3], float hi[3])
 {
@@ -117,7 +71,7 @@ static uint64_t count_in_block(const search *find, uint64_t block, int k, const 
             continue;
         hewn_facet second;
         uint32_t partner = find->bvh.order[4 * other + i];
-        load_facet(find->mesh, partner, &second);
+        hewn_view_facet(find->mesh, partner, &second);
         if (!hewn_facets_meet_improperly(facet, &second))
             continue;
         found++;
@@ -133,7 +87,7 @@ static uint64_t count_for_block(const search *find, uint64_t block)
     hewn_facet facets[4];
     int count = (int)least(4, find->mesh->triangle_count - 4 * block);
     for (int k = 0; k < count; k++)
-        load_facet(find->mesh, find->bvh.order[4 * block + k], &facets[k]);
+        hewn_view_facet(find->mesh, find->bvh.order[4 * block + k], &facets[k]);
     float lo[3], hi[3];
     hewn_boxes4_all(&find->bvh.level[0][block], lo, hi);
     hewn_bvh_walk walk = hewn_bvh_walk_begin(&find->bvh, lo, hi, block);
@@ -170,7 +124,7 @@ static int compare_partners(const void *a, const void *b)
 static void write_row(const search *find, uint32_t face, uint32_t (*pairs)[2])
 {
     hewn_facet facet, second;
-    load_facet(find->mesh, face, &facet);
+    hewn_view_facet(find->mesh, face, &facet);
     float lo[3], hi[3];
     hewn_triangle_box(find->mesh, face, lo, hi);
     hewn_bvh_walk walk = hewn_bvh_walk_begin(&find->bvh, lo, hi, 0);
@@ -181,7 +135,7 @@ static void write_row(const search *find, uint32_t face, uint32_t (*pairs)[2])
             uint32_t partner = find->bvh.order[4 * block + i];
             if ((meets >> i & 1) == 0 || partner <= face)
                 continue;
-            load_facet(find->mesh, partner, &second);
+            hewn_view_facet(find->mesh, partner, &second);
             if (hewn_facets_meet_improperly(&facet, &second)) {
                 pairs[count][0] = face;
                 pairs[count++][1] = partner;

@@ -10,31 +10,31 @@
 /* Rows up to RING_LIMIT try the cheap walk around the vertex; rows past ROW_LIMIT leave the threads' fixed memory. */
 enum { RING_LIMIT = 16, ROW_LIMIT = 256, PART_LIMIT = 8 };
 
-/* --- sorting triangles into rows --------------------------------------------------------------------------------- */
+/* --- sorting corners into rows ------------------------------------------------------------------------------------ */
 
-/* Each part of the vertices belongs to one thread, which reads all triangles: no atomics, and the order inside a row
- * does not depend on the number of threads. */
-static void count_part(const hewn_triangles *mesh, uint32_t *count, uint32_t begin, uint32_t length)
+/* Each part of the vertices belongs to one thread, which reads all faces: no atomics, and the order inside a row does
+ * not depend on the number of threads. */
+static void count_part(const hewn_face_view *view, uint32_t *count, uint32_t begin, uint32_t length)
 {
-    for (uint64_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *corner = mesh->indices + 3 * t;
-        if (hewn_triangle_collapsed(corner))
+    for (uint64_t f = 0; f < view->face_count; f++) {
+        if (hewn_face_collapsed(view, f))
             continue;
-        for (int k = 0; k < 3; k++)
-            if (corner[k] - begin < length)
-                count[corner[k]]++;
+        uint64_t end = hewn_face_begin(view, f + 1);
+        for (uint64_t c = hewn_face_begin(view, f); c < end; c++)
+            if (view->corners[c] - begin < length)
+                count[view->corners[c]]++;
     }
 }
 
-static void fill_part(const hewn_triangles *mesh, hewn_stars *stars, uint32_t begin, uint32_t length)
+static void fill_part(const hewn_face_view *view, hewn_stars *stars, uint32_t begin, uint32_t length)
 {
-    for (uint64_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *corner = mesh->indices + 3 * t;
-        if (hewn_triangle_collapsed(corner))
+    for (uint64_t f = 0; f < view->face_count; f++) {
+        if (hewn_face_collapsed(view, f))
             continue;
-        for (int k = 0; k < 3; k++)
-            if (corner[k] - begin < length)
-                stars->triangles[stars->first[corner[k]]++] = (uint32_t)t;
+        uint64_t end = hewn_face_begin(view, f + 1);
+        for (uint64_t c = hewn_face_begin(view, f); c < end; c++)
+            if (view->corners[c] - begin < length)
+                stars->corners[stars->first[view->corners[c]]++] = (uint32_t)c;
     }
 }
 
@@ -52,33 +52,33 @@ static uint32_t accumulate(uint32_t *first, uint64_t count, uint32_t *longest)
     return sum;
 }
 
-hewn_result hewn_stars_build(const hewn_triangles *mesh, hewn_stars *out, hewn_error *error)
+hewn_result hewn_stars_build(const hewn_face_view *view, hewn_stars *out, hewn_error *error)
 {
-    uint64_t vertices = mesh->vertex_count;
+    uint64_t vertices = view->vertex_count;
     *out = (hewn_stars){.first = hewn_alloc_zero(vertices + 1, sizeof *out->first)};
     if (!out->first)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the stars of %llu vertices",
                          (unsigned long long)vertices);
-    int threads = mesh->triangle_count < HEWN_CERTIFY_ALONE ? 1 : omp_get_max_threads();
+    int threads = view->face_count < HEWN_CHECK_ALONE ? 1 : omp_get_max_threads();
     int parts = threads < PART_LIMIT ? threads : PART_LIMIT;
 #pragma omp parallel for schedule(static, 1) num_threads(parts)
     for (int p = 0; p < parts; p++) {
         uint32_t begin = (uint32_t)(vertices * (uint64_t)p / (uint64_t)parts);
         uint32_t end = (uint32_t)(vertices * (uint64_t)(p + 1) / (uint64_t)parts);
-        count_part(mesh, out->first, begin, end - begin);
+        count_part(view, out->first, begin, end - begin);
     }
     uint32_t total = accumulate(out->first, vertices, &out->longest);
-    out->triangles = hewn_alloc(total, sizeof *out->triangles);
-    if (!out->triangles) {
+    out->corners = hewn_alloc(total, sizeof *out->corners);
+    if (!out->corners) {
         hewn_stars_free(out);
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the stars of %llu triangles",
-                         (unsigned long long)mesh->triangle_count);
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the stars of %llu faces",
+                         (unsigned long long)view->face_count);
     }
 #pragma omp parallel for schedule(static, 1) num_threads(parts)
     for (int p = 0; p < parts; p++) {
         uint32_t begin = (uint32_t)(vertices * (uint64_t)p / (uint64_t)parts);
         uint32_t end = (uint32_t)(vertices * (uint64_t)(p + 1) / (uint64_t)parts);
-        fill_part(mesh, out, begin, end - begin);
+        fill_part(view, out, begin, end - begin);
     }
     /* Filling moved each start to its row's end, which is the next row's start. */
     memmove(out->first + 1, out->first, vertices * sizeof *out->first);
@@ -89,43 +89,23 @@ hewn_result hewn_stars_build(const hewn_triangles *mesh, hewn_stars *out, hewn_e
 void hewn_stars_free(hewn_stars *stars)
 {
     hewn_free(stars->first);
-    hewn_free(stars->triangles);
+    hewn_free(stars->corners);
     *stars = (hewn_stars){0};
 }
 
 /* --- reading one star --------------------------------------------------------------------------------------------- */
 
-/* A triangle (v, tail, head) seen from v: an arc of v's link, from `tail` to `head`. It uses the edge v-tail outward
- * and the edge v-head inward. */
-typedef struct link_arc {
-    uint32_t tail, head;
-} link_arc;
-
-/* Room for one star of any shape. */
-typedef struct star_room {
-    link_arc *arcs;
-    uint64_t *ends;   /* two an arc: neighbour << 32 | arc << 1 | is it the head */
-    uint32_t *parent; /* of a union-find over arcs */
-} star_room;
-
-static void gather(const hewn_triangles *mesh, const uint32_t *row, uint32_t length, uint32_t v, link_arc *arcs)
+static void gather(const hewn_face_view *view, const uint32_t *row, uint32_t length, hewn_link_arc *arcs)
 {
-    for (uint32_t i = 0; i < length; i++) {
-        const uint32_t *corner = mesh->indices + 3 * (uint64_t)row[i];
-        if (corner[0] == v)
-            arcs[i] = (link_arc){corner[1], corner[2]};
-        else if (corner[1] == v)
-            arcs[i] = (link_arc){corner[2], corner[0]};
-        else
-            arcs[i] = (link_arc){corner[0], corner[1]};
-    }
+    for (uint32_t i = 0; i < length; i++)
+        arcs[i] = (hewn_link_arc){view->corners[hewn_corner_after(view, row[i])],
+                                  view->corners[hewn_corner_before(view, row[i])]};
 }
 
-/* Whether the arcs form one directed ring that meets each neighbour once: the usual case, and nothing is wrong there.
- * Counts the edges whose lesser end is v. */
-static bool is_ring(const link_arc *arcs, uint32_t length, uint32_t v, uint64_t *edges)
+/* Whether the arcs form one directed ring that meets each neighbour once: the usual case. */
+static bool is_ring(const hewn_link_arc *arcs, uint32_t length)
 {
-    uint32_t greater = 0, at = 0;
+    uint32_t at = 0;
     for (uint32_t step = 0; step < length; step++) {
         uint32_t next = 0, matches = 0;
         for (uint32_t i = 0; i < length; i++) {
@@ -135,10 +115,8 @@ static bool is_ring(const link_arc *arcs, uint32_t length, uint32_t v, uint64_t 
         }
         if (matches != 1 || (next == 0) != (step + 1 == length))
             return false;
-        greater += arcs[at].head > v;
         at = next;
     }
-    *edges += greater;
     return true;
 }
 
@@ -163,8 +141,9 @@ static void sort_ends(uint64_t *ends, size_t count)
     }
 }
 
-static uint32_t find_arc(uint32_t *parent, uint32_t arc)
+uint32_t hewn_star_fan(const hewn_star_room *room, uint32_t arc)
 {
+    uint32_t *parent = room->parent;
     while (parent[arc] != arc) {
         parent[arc] = parent[parent[arc]];
         arc = parent[arc];
@@ -172,28 +151,45 @@ static uint32_t find_arc(uint32_t *parent, uint32_t arc)
     return arc;
 }
 
-/* Any star: ends sorted by neighbour give the uses of each edge, a union-find over arcs the number of fans. */
-static void read_star(const star_room *room, uint32_t length, uint32_t v, hewn_star_counts *counts)
+/* Ends sorted by neighbour show the uses of each edge; arcs that meet at a neighbour are of one fan. */
+static void find_fans(const hewn_star_room *room, uint32_t length)
 {
     for (uint32_t i = 0; i < length; i++) {
         room->ends[2 * (size_t)i] = (uint64_t)room->arcs[i].tail << 32 | (uint64_t)i << 1;
         room->ends[2 * (size_t)i + 1] = (uint64_t)room->arcs[i].head << 32 | (uint64_t)i << 1 | 1;
         room->parent[i] = i;
     }
-    size_t end_count = 2 * (size_t)length;
-    sort_ends(room->ends, end_count);
-    uint32_t fans = length;
+    sort_ends(room->ends, 2 * (size_t)length);
+    for (size_t i = 1; i < 2 * (size_t)length; i++)
+        if (room->ends[i] >> 32 == room->ends[i - 1] >> 32) {
+            uint32_t fan = hewn_star_fan(room, (uint32_t)room->ends[i] >> 1);
+            room->parent[fan] = hewn_star_fan(room, (uint32_t)room->ends[i - 1] >> 1);
+        }
+}
+
+bool hewn_star_read(const hewn_face_view *view, const hewn_stars *stars, uint32_t v, const hewn_star_room *room)
+{
+    uint32_t length = hewn_star_length(stars, v);
+    gather(view, stars->corners + stars->first[v], length, room->arcs);
+    if (length <= RING_LIMIT && is_ring(room->arcs, length))
+        return true;
+    find_fans(room, length);
+    return false;
+}
+
+/* A star that is no ring: what its edges and fans add to the counts. */
+static void count_star(const hewn_star_room *room, uint32_t length, uint32_t v, hewn_star_counts *counts)
+{
+    uint32_t fans = 0;
     bool crowded = false;
+    for (uint32_t i = 0; i < length; i++)
+        fans += room->parent[i] == i;
+    size_t end_count = 2 * (size_t)length;
     for (size_t begin = 0, end; begin < end_count; begin = end) {
         uint32_t neighbour = (uint32_t)(room->ends[begin] >> 32);
-        uint32_t first = find_arc(room->parent, (uint32_t)room->ends[begin] >> 1);
         uint64_t inward = 0;
-        for (end = begin; end < end_count && room->ends[end] >> 32 == neighbour; end++) {
+        for (end = begin; end < end_count && room->ends[end] >> 32 == neighbour; end++)
             inward += room->ends[end] & 1;
-            uint32_t other = find_arc(room->parent, (uint32_t)room->ends[end] >> 1);
-            fans -= other != first;
-            room->parent[other] = first;
-        }
         uint64_t uses = end - begin;
         crowded = crowded || uses > 2;
         if (neighbour > v) {
@@ -201,82 +197,95 @@ static void read_star(const star_room *room, uint32_t length, uint32_t v, hewn_s
             counts->boundary_edges += uses == 1;
             counts->non_manifold_edges += uses > 2;
             counts->unoriented_edges += uses > 1 && 2 * inward != uses;
+            counts->bent_edges += uses == 2 && inward != 1;
         }
     }
     counts->non_manifold_vertices += crowded || fans > 1;
 }
 
-static bool make_room(star_room *room, uint32_t length)
+hewn_result hewn_star_room_create(uint32_t length, hewn_star_room *out, hewn_error *error)
 {
-    room->arcs = hewn_alloc(length, sizeof *room->arcs);
-    room->ends = hewn_alloc(2 * (size_t)length, sizeof *room->ends);
-    room->parent = hewn_alloc(length, sizeof *room->parent);
-    return room->arcs && room->ends && room->parent;
+    out->arcs = hewn_alloc(length, sizeof *out->arcs);
+    out->ends = hewn_alloc(2 * (size_t)length, sizeof *out->ends);
+    out->parent = hewn_alloc(length, sizeof *out->parent);
+    if (!out->arcs || !out->ends || !out->parent)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a vertex with %u faces", length);
+    return HEWN_OK;
 }
 
-static void free_room(star_room *room)
+void hewn_star_room_free(hewn_star_room *room)
 {
     hewn_free(room->arcs);
     hewn_free(room->ends);
     hewn_free(room->parent);
 }
 
-static void examine_vertex(const hewn_triangles *mesh, const hewn_stars *stars, uint32_t v, const star_room *room,
+static void examine_vertex(const hewn_face_view *view, const hewn_stars *stars, uint32_t v, const hewn_star_room *room,
                            hewn_star_counts *counts)
 {
-    uint32_t length = stars->first[v + 1ull] - stars->first[v];
+    uint32_t length = hewn_star_length(stars, v);
     counts->used_vertices++;
-    gather(mesh, stars->triangles + stars->first[v], length, v, room->arcs);
-    if (length > RING_LIMIT || !is_ring(room->arcs, length, v, &counts->edges))
-        read_star(room, length, v, counts);
+    if (!hewn_star_read(view, stars, v, room)) {
+        count_star(room, length, v, counts);
+        return;
+    }
+    for (uint32_t i = 0; i < length; i++)
+        counts->edges += room->arcs[i].head > v;
 }
 
 /* --- all stars ---------------------------------------------------------------------------------------------------- */
 
-static void add_counts(hewn_star_counts *sum, const hewn_star_counts *part)
+void hewn_star_counts_add(hewn_star_counts *sum, const hewn_star_counts *part)
 {
     sum->used_vertices += part->used_vertices;
     sum->edges += part->edges;
     sum->boundary_edges += part->boundary_edges;
     sum->non_manifold_edges += part->non_manifold_edges;
     sum->unoriented_edges += part->unoriented_edges;
+    sum->bent_edges += part->bent_edges;
     sum->non_manifold_vertices += part->non_manifold_vertices;
 }
 
-static void examine_short_rows(const hewn_triangles *mesh, const hewn_stars *stars, uint64_t begin, uint64_t end,
-                               hewn_star_counts *counts)
+/* Rows that fit into the threads' fixed memory. Sums are kept for a run of vertices of one slot. */
+static void examine_short_rows(const hewn_face_view *view, const hewn_stars *stars, uint64_t begin, uint64_t end,
+                               const uint32_t *slots, hewn_star_counts *counts)
 {
-#pragma omp parallel if (end - begin >= HEWN_CERTIFY_ALONE)
+#pragma omp parallel if (end - begin >= HEWN_CHECK_ALONE)
     {
-        link_arc arcs[ROW_LIMIT];
+        hewn_link_arc arcs[ROW_LIMIT];
         uint64_t ends[2 * ROW_LIMIT];
-        uint32_t parent[ROW_LIMIT];
-        star_room room = {arcs, ends, parent};
+        uint32_t parent[ROW_LIMIT], slot = 0;
+        hewn_star_room room = {arcs, ends, parent};
         hewn_star_counts part = {0};
 #pragma omp for schedule(dynamic, 4096)
         for (uint64_t v = begin; v < end; v++) {
-            uint32_t length = stars->first[v + 1] - stars->first[v];
-            if (length > 0 && length <= ROW_LIMIT)
-                examine_vertex(mesh, stars, (uint32_t)v, &room, &part);
+            uint32_t length = hewn_star_length(stars, (uint32_t)v);
+            if (length == 0 || length > ROW_LIMIT)
+                continue;
+            if (slots && slots[v] != slot) {
+#pragma omp critical(hewn_star_sum)
+                hewn_star_counts_add(&counts[slot], &part);
+                part = (hewn_star_counts){0};
+                slot = slots[v];
+            }
+            examine_vertex(view, stars, (uint32_t)v, &room, &part);
         }
 #pragma omp critical(hewn_star_sum)
-        add_counts(counts, &part);
+        hewn_star_counts_add(&counts[slot], &part);
     }
 }
 
-hewn_result hewn_stars_examine(const hewn_triangles *mesh, const hewn_stars *stars, uint64_t begin, uint64_t end,
-                               hewn_star_counts *counts, hewn_error *error)
+hewn_result hewn_stars_examine(const hewn_face_view *view, const hewn_stars *stars, uint64_t begin, uint64_t end,
+                               const uint32_t *slots, hewn_star_counts *counts, hewn_error *error)
 {
-    examine_short_rows(mesh, stars, begin, end, counts);
+    examine_short_rows(view, stars, begin, end, slots, counts);
     if (stars->longest <= ROW_LIMIT)
         return HEWN_OK;
-    star_room room;
-    hewn_result result = HEWN_OK;
-    if (!make_room(&room, stars->longest))
-        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a vertex with %u triangles", stars->longest);
+    hewn_star_room room;
+    hewn_result result = hewn_star_room_create(stars->longest, &room, error);
     for (uint64_t v = begin; v < end && result == HEWN_OK; v++)
-        if (stars->first[v + 1] - stars->first[v] > ROW_LIMIT)
-            examine_vertex(mesh, stars, (uint32_t)v, &room, counts);
-    free_room(&room);
+        if (hewn_star_length(stars, (uint32_t)v) > ROW_LIMIT)
+            examine_vertex(view, stars, (uint32_t)v, &room, &counts[slots ? slots[v] : 0]);
+    hewn_star_room_free(&room);
     return result;
 }

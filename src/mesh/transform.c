@@ -53,25 +53,6 @@ void hewn_mesh_reverse_topology(hewn_mesh *mesh)
 
 /* --- normals ------------------------------------------------------------------------------------------------------ */
 
-static void read_normal(const mesh_attribute *attribute, uint32_t element, double out[3])
-{
-    const unsigned char *at = attribute->data + element * attribute->stride;
-    for (int k = 0; k < 3; k++)
-        out[k] = attribute->info.scalar == HEWN_SCALAR_FLOAT ? (double)((const float *)(const void *)at)[k]
-                                                             : ((const double *)(const void *)at)[k];
-}
-
-static void write_normal(mesh_attribute *attribute, uint32_t element, const double normal[3])
-{
-    unsigned char *at = attribute->data + element * attribute->stride;
-    for (int k = 0; k < 3; k++) {
-        if (attribute->info.scalar == HEWN_SCALAR_FLOAT)
-            ((float *)(void *)at)[k] = (float)normal[k];
-        else
-            ((double *)(void *)at)[k] = normal[k];
-    }
-}
-
 /* Normals by a row-major 3 x 3 matrix; with `unit` their length becomes 1, but for those of length 0. */
 static void turn_normals(hewn_mesh *mesh, const double matrix[9], bool unit)
 {
@@ -80,14 +61,14 @@ static void turn_normals(hewn_mesh *mesh, const double matrix[9], bool unit)
         uint32_t bound = mesh_domain_bound(mesh, attribute->info.domain);
         for (uint32_t e = 0; attribute->direction && e < bound; e++) {
             double old[3], normal[3];
-            read_normal(attribute, e, old);
+            hewn_mesh_read_direction(attribute, e, old);
             for (int k = 0; k < 3; k++)
                 normal[k] = matrix[3 * k] * old[0] + matrix[3 * k + 1] * old[1] + matrix[3 * k + 2] * old[2];
             double length = unit ? sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]) : 1;
             if (length > 0 && isfinite(length))
                 for (int k = 0; k < 3; k++)
                     normal[k] /= length;
-            write_normal(attribute, e, normal);
+            hewn_mesh_write_direction(attribute, e, normal);
         }
     }
 }

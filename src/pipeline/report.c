@@ -1,14 +1,12 @@
 #include "pipeline/report.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "base/file.h"
-#include "base/json.h"
+#include "pipeline/json_parts.h"
 
 void hewn_report_add_stage(hewn_report *report, const char *name, double begin, double end)
 {
@@ -92,40 +90,6 @@ void hewn_report_destroy(hewn_report *report)
     *report = (hewn_report){0};
 }
 
-/* Microseconds are all that a wall clock is good for; more digits only make the file hard to read. */
-static double microseconds(double seconds)
-{
-    return round(seconds * 1e6) / 1e6;
-}
-
-static void print_vector(hewn_json *json, const char *key, const double vector[3])
-{
-    hewn_json_array(json, key);
-    for (int axis = 0; axis < 3; ++axis)
-        hewn_json_number(json, NULL, vector[axis]);
-    hewn_json_end_array(json);
-}
-
-static void print_box(hewn_json *json, const char *key, const hewn_box *box)
-{
-    hewn_json_object(json, key);
-    print_vector(json, "lo", box->lo);
-    print_vector(json, "hi", box->hi);
-    hewn_json_end_object(json);
-}
-
-static const char *format_name(hewn_mesh_format format)
-{
-    switch (format) {
-    case HEWN_MESH_GLB: return "glb";
-    case HEWN_MESH_OBJ: return "obj";
-    case HEWN_MESH_PLY: return "ply";
-    case HEWN_MESH_STL: return "stl";
-    case HEWN_MESH_UNKNOWN: break;
-    }
-    return NULL;
-}
-
 static const char *bounds_source_name(hewn_bounds_source source)
 {
     switch (source) {
@@ -148,7 +112,7 @@ static void print_request(hewn_json *json, const hewn_report *report)
     hewn_json_end_object(json);
     hewn_json_string(json, "units", report->units);
     hewn_json_string(json, "output", report->output);
-    hewn_json_string(json, "format", format_name(report->format));
+    hewn_json_string(json, "format", hewn_mesh_format_name(report->format));
     hewn_json_string(json, "method", "mc");
     hewn_json_bool(json, "open", report->open);
     if (report->resolution)
@@ -163,26 +127,10 @@ static void print_request(hewn_json *json, const hewn_report *report)
     hewn_json_string(json, "driver", report->device.driver);
 }
 
-static void print_stages(hewn_json *json, const hewn_report *report)
-{
-    hewn_json_number(json, "seconds", microseconds(report->seconds));
-    hewn_json_array(json, "stages");
-    for (uint32_t i = 0; i < report->stage_count; ++i) {
-        const hewn_report_stage *stage = &report->stages[i];
-        hewn_json_object(json, NULL);
-        hewn_json_string(json, "name", stage->name);
-        hewn_json_number(json, "begin", microseconds(stage->begin));
-        hewn_json_number(json, "end", microseconds(stage->end));
-        hewn_json_number(json, "seconds", microseconds(stage->end - stage->begin));
-        hewn_json_end_object(json);
-    }
-    hewn_json_end_array(json);
-}
-
 static void print_extraction(hewn_json *json, const hewn_report *report)
 {
     const hewn_extract_stats *stats = &report->extraction;
-    print_box(json, "bounds", &stats->bounds);
+    hewn_json_box(json, "bounds", &stats->bounds);
     hewn_json_string(json, "bounds_from", bounds_source_name(report->bounds_source));
     hewn_json_number(json, "cell", stats->cell);
     hewn_json_array(json, "cells");
@@ -206,7 +154,7 @@ static void print_certificate(hewn_json *json, const hewn_certificate *certifica
     hewn_json_integer(json, "genus", certificate->genus);
     hewn_json_number(json, "volume", certificate->volume);
     hewn_json_number(json, "area", certificate->area);
-    print_box(json, "bounds", &certificate->bounds);
+    hewn_json_box(json, "bounds", &certificate->bounds);
     hewn_json_number(json, "max_residual", certificate->max_residual);
     hewn_json_unsigned(json, "boundary_edges", certificate->boundary_edges);
     hewn_json_unsigned(json, "non_manifold_edges", certificate->non_manifold_edges);
@@ -228,18 +176,6 @@ static void print_result(hewn_json *json, const hewn_report *report)
     print_certificate(json, &report->certificate);
 }
 
-static hewn_result write_text(const hewn_text *text, const char *path, hewn_error *error)
-{
-    HEWN_TRY(hewn_text_status(text, error));
-    hewn_output *output = NULL;
-    HEWN_TRY(hewn_output_create(path, &output, error));
-    hewn_result result = hewn_output_write(output, text->bytes, text->length, error);
-    if (result == HEWN_OK)
-        return hewn_output_finish(&output, error);
-    hewn_output_destroy(&output);
-    return result;
-}
-
 hewn_result hewn_report_write(const hewn_report *report, const char *path, hewn_error *error)
 {
     hewn_text text = {0};
@@ -247,14 +183,12 @@ hewn_result hewn_report_write(const hewn_report *report, const char *path, hewn_
     hewn_json_object(&json, NULL);
     hewn_json_string(&json, "version", hewn_version());
     hewn_json_string(&json, "input", report->input);
-    if (report->output) /* a mesh that was only examined has no making to tell of */
-        print_request(&json, report);
-    print_stages(&json, report);
-    if (report->output)
-        print_extraction(&json, report);
+    print_request(&json, report);
+    hewn_json_stages(&json, report->stages, report->stage_count, report->seconds);
+    print_extraction(&json, report);
     print_result(&json, report);
     hewn_json_end_object(&json);
-    hewn_result result = write_text(&text, path, error);
+    hewn_result result = hewn_json_finish(&text, path, error);
     hewn_text_clear(&text);
     return result;
 }

@@ -178,29 +178,25 @@ static int set_bounds(lua_State *L)
 
 static int set_units(lua_State *L)
 {
-    size_t found;
     hewn_lua_check_count(L, "units", 1, 1);
     const char *name = hewn_lua_string(L, 1, "units");
-    if (!hewn_scene_find_units(name, &found))
-        return luaL_error(L, "units: there is no unit '%s'; there are %s", name, hewn_scene_unit_names);
+    const hewn_unit *unit = hewn_unit_find(name);
+    if (!unit)
+        return luaL_error(L, "units: there is no unit '%s'; there are %s", name, hewn_unit_names());
     if (speaks_for_scene(L))
-        hewn_lua_of(L)->scene->units = found;
+        hewn_lua_of(L)->scene->unit = unit;
     return 0;
 }
 
 static int set_up(lua_State *L)
 {
-    static const char *const names[] = {
-        [HEWN_AXIS_PLUS_Y] = "+Y", [HEWN_AXIS_PLUS_Z] = "+Z", [HEWN_AXIS_PLUS_X] = "+X"};
+    hewn_axis up;
     hewn_lua_check_count(L, "up", 1, 1);
     const char *name = hewn_lua_string(L, 1, "up");
-    size_t i = 0, count = sizeof names / sizeof names[0];
-    while (i < count && strcmp(name, names[i]) != 0)
-        i++;
-    if (i == count)
+    if (!hewn_axis_find(name, &up))
         return luaL_error(L, "up: there is no direction '%s'; there are +Y, +Z, +X", name);
     if (speaks_for_scene(L))
-        hewn_lua_of(L)->scene->up = (hewn_axis)i;
+        hewn_lua_of(L)->scene->up = up;
     return 0;
 }
 

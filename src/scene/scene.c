@@ -11,23 +11,6 @@
 #include "base/file.h"
 #include "base/text.h"
 
-static const struct {
-    const char *name;
-    double metres;
-} units[] = {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}};
-
-const char hewn_scene_unit_names[] = "m, cm, mm, um, km, in, ft";
-
-bool hewn_scene_find_units(const char *name, size_t *found)
-{
-    for (size_t i = 0; i < sizeof units / sizeof units[0]; i++)
-        if (strcmp(units[i].name, name) == 0) {
-            *found = i;
-            return true;
-        }
-    return false;
-}
-
 hewn_result hewn_scene_add_source(hewn_scene *scene, char *path, char *real, hewn_error *error)
 {
     void *items = scene->sources;
@@ -236,12 +219,12 @@ bool hewn_scene_bounds(const hewn_scene *scene, hewn_box *out)
 
 double hewn_scene_metres_per_unit(const hewn_scene *scene)
 {
-    return units[scene->units].metres;
+    return hewn_unit_metres(hewn_scene_unit(scene));
 }
 
-const char *hewn_scene_units(const hewn_scene *scene)
+const hewn_unit *hewn_scene_unit(const hewn_scene *scene)
 {
-    return units[scene->units].name;
+    return scene->unit ? scene->unit : hewn_unit_at(0);
 }
 
 hewn_axis hewn_scene_up(const hewn_scene *scene)

@@ -23,7 +23,7 @@ struct hewn_scene {
     size_t source_count, source_capacity;
     bool has_bounds;
     hewn_box bounds;
-    size_t units; /* index into the table of units */
+    const hewn_unit *unit; /* NULL: the scene says none */
     hewn_axis up;
     /* only while loading: */
     char *root; /* the folder that imports must stay in, without links; NULL lets them lie anywhere */
@@ -38,12 +38,6 @@ hewn_result hewn_scene_load_text(const hewn_scene_desc *desc, const char *text, 
 
 /* Adds a file and takes over both strings, also on failure. */
 hewn_result hewn_scene_add_source(hewn_scene *scene, char *path, char *real, hewn_error *error);
-
-/* Finds a unit by its name; false if there is none of it. */
-bool hewn_scene_find_units(const char *name, size_t *units);
-
-/* The names of all units, for messages. */
-extern const char hewn_scene_unit_names[];
 
 /* --- paths ------------------------------------------------------------------------------------------------------- */
 

@@ -85,11 +85,11 @@ static void become_command(const run_desc *desc, int in, int out, int err)
         struct rlimit limit = {desc->file_limit, desc->file_limit};
         setrlimit(RLIMIT_FSIZE, &limit);
     }
-    const char *command = getenv("HEWN_COMMAND");
+    const char *command = desc->program ? desc->program : getenv("HEWN_COMMAND");
     char *arguments[RUN_MAX_ARGUMENTS + 2] = {(char *)(intptr_t)command};
     for (int i = 0; i < RUN_MAX_ARGUMENTS && desc->arguments[i]; i++)
         arguments[i + 1] = (char *)(intptr_t)desc->arguments[i];
-    execv(command, arguments);
+    execvp(command, arguments);
     _exit(127);
 }
 
@@ -342,6 +342,19 @@ void run_assert_same_file(const char *a, const char *b)
         fail_msg("%s and %s differ", a, b);
     free(bytes_a);
     free(bytes_b);
+}
+
+void run_need_program(const char *program)
+{
+    char *folders = strdup(getenv("PATH") ? getenv("PATH") : ""), *rest = NULL;
+    bool found = false;
+    for (char *folder = strtok_r(folders, ":", &rest); folder; folder = strtok_r(NULL, ":", &rest))
+        found = found || access(run_path(folder, program), X_OK) == 0;
+    free(folders);
+    if (!found) {
+        print_message("# the program %s is not installed\n", program);
+        skip();
+    }
 }
 
 const char *run_project_file(const char *name)

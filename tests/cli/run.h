@@ -18,6 +18,7 @@ enum { RUN_MAX_ARGUMENTS = 32, RUN_MAX_CHANGES = 8 };
 
 /* How to run it. Zero everywhere but `arguments` is the ordinary way. */
 typedef struct run_desc {
+    const char *program;                      /* another one than Hewn, found on PATH; NULL: Hewn */
     const char *arguments[RUN_MAX_ARGUMENTS]; /* after the command's name, up to a NULL */
     const char *folder;                       /* working folder */
     const char *input;                        /* file for standard input; NULL: empty */
@@ -89,6 +90,9 @@ char *run_read_file(const char *path, size_t *length);
 
 /* Fails the test unless both files have the same bytes, and more than a few. */
 void run_assert_same_file(const char *a, const char *b);
+
+/* Skips the test where there is no such program on PATH. */
+void run_need_program(const char *program);
 
 /* A file of the project ("assets/scenes/csg.lua"), and one of the test data; the latter skips the test if missing. */
 const char *run_project_file(const char *name);

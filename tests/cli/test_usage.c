@@ -5,7 +5,7 @@
 
 #define NO_LOADER "HEWN_VULKAN_LOADER=/nonexistent/libvulkan.so"
 
-static const char *const commands[] = {"mesh", "info", "devices"};
+static const char *const commands[] = {"mesh", "info", "check", "repair", "convert", "devices"};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static run_result run_words(int code, const char *first, const char *second, const char *third)
@@ -187,9 +187,9 @@ static const mistake mistakes[] = {
     {{"mesh", "a.lua", "-o", "a.glb", "-DL=three"}, "a number, not 'three'"},
     {{"mesh", "a.lua", "-o", "a.glb", "--from", "scad"}, "not 'scad'"},
     {{"mesh", "a.lua", "-o", "a.glb", "--to", "gif"}, "not 'gif'"},
-    {{"mesh", "a.lua", "-o", "a.foo"}, "does not end in .glb, .obj, .ply or .stl"},
-    {{"mesh", "a.lua", "-o", "a"}, "does not end in .glb, .obj, .ply or .stl"},
-    {{"mesh", "a.lua", "-o", "-"}, "--to ply, stl or obj"},
+    {{"mesh", "a.lua", "-o", "a.foo"}, "does not end in .glb, .obj, .ply, .stl, .off or .3mf"},
+    {{"mesh", "a.lua", "-o", "a"}, "does not end in .glb, .obj, .ply, .stl, .off or .3mf"},
+    {{"mesh", "a.lua", "-o", "-"}, "--to obj, ply, stl or off"},
     {{"mesh", "a.lua", "-o", "-", "--to", "glb"}, "GLB cannot be written to standard output"},
     {{"mesh", "-", "-o", "a.glb"}, "--from"},
     {{"mesh", "-", "--from", "vm", "-o", "a.glb", "--watch"}, "--watch"},

@@ -1,20 +1,8 @@
-/* STL from memory: whatever the bytes are, reading them gives a mesh that can be certified, or an error and nothing. */
-#include <stdlib.h>
-
-#include "io/formats.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+/* STL from memory. */
+#include "fuzz_model.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    hewn_triangles mesh;
-    if (hewn_stl_read((const char *)data, size, "fuzz", &mesh, NULL) == HEWN_OK) {
-        hewn_certificate certificate;
-        if (hewn_certify(&mesh, NULL, &certificate, NULL) != HEWN_OK)
-            abort();
-        hewn_triangles_destroy(&mesh);
-    }
-    if (mesh.positions || mesh.normals || mesh.indices || mesh.vertex_count || mesh.triangle_count)
-        abort();
+    fuzz_model(hewn_stl_read, data, size, "stl");
     return 0;
 }

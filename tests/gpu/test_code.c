@@ -129,35 +129,69 @@ static void run_rows(hewn_device *device, const hewn_code *code, const float *ro
     hewn_buffer_destroy(device, &out);
 }
 
-/* Points, gradients' values and signs of rows, all at the same arguments; rows also with the numbers in the code. */
+/* Everything that a code computes at the same arguments. */
+enum { ROWS = 1000, SAMPLES = 8 * ROWS };
+typedef struct bits {
+    float values[SAMPLES], gradients[4 * SAMPLES], intervals[2 * SAMPLES];
+    uint32_t signs[ROWS];
+} bits;
+
+static void compute_bits(fixture *state, const hewn_field *field, hewn_node root, hewn_numbers numbers,
+                         const float *rows, const float *points, const float *boxes, bits *out)
+{
+    hewn_code *code = code_with(state->device, field, root, numbers);
+    GPU_TEST_TRY(hewn_code_eval_points(state->device, code, points, SAMPLES, out->values, &error));
+    GPU_TEST_TRY(hewn_code_eval_gradients(state->device, code, points, SAMPLES, out->gradients, &error));
+    GPU_TEST_TRY(hewn_code_eval_boxes(state->device, code, boxes, SAMPLES, out->intervals, &error));
+    run_rows(state->device, code, rows, ROWS, out->signs);
+    hewn_code_destroy(state->device, &code);
+}
+
+/* Two codes of one field, one with its numbers in a buffer and one with literals. Gradients too, and the signs of their
+ * zeros, since a mesh holds them; only where a factor is infinite a literal zero may win, and there is no normal. */
+static void check_same(const bits *buffer, const bits *literals, const char *name)
+{
+    assert_memory_equal(buffer->signs, literals->signs, sizeof buffer->signs);
+    for (int i = 0; i < SAMPLES; i++)
+        if (!code_same(buffer->values[i], literals->values[i]))
+            fail_msg("%s: value %.9g, with literals %.9g", name, (double)buffer->values[i],
+                     (double)literals->values[i]);
+    for (int i = 0; i < 2 * SAMPLES; i++)
+        if (!code_same(buffer->intervals[i], literals->intervals[i]))
+            fail_msg("%s: bound %.9g, with literals %.9g", name, (double)buffer->intervals[i],
+                     (double)literals->intervals[i]);
+    for (int i = 0; i < 4 * SAMPLES; i++) {
+        float a = buffer->gradients[i], b = literals->gradients[i];
+        if (i % 4 > 0 && isfinite(a) && isfinite(b) && code_bits(a) != code_bits(b))
+            fail_msg("%s: derivative %.9g, with literals %.9g", name, (double)a, (double)b);
+    }
+}
+
+/* Points, gradients' values and signs of rows agree, and wherever the numbers stand all has the same bits. */
 static void check_bits(fixture *state, const hewn_field *field, hewn_node root, const char *name)
 {
-    enum { ROWS = 1000, COUNT = 8 * ROWS };
-    static float rows[ROW * ROWS], points[3 * COUNT], values[COUNT], gradients[4 * COUNT];
-    static uint32_t signs[ROWS], fixed_signs[ROWS];
+    static float rows[ROW * ROWS], points[3 * SAMPLES], boxes[6 * SAMPLES];
+    static bits got, fixed;
     for (int i = 0; i < ROW * ROWS; i++)
         rows[i] = gpu_test_random(&state->random) % 16
                       ? (float)code_between(&state->random, -3, 3)
                       : code_awkward_at(gpu_test_random(&state->random) % CODE_AWKWARD);
-    for (int i = 0; i < COUNT; i++) {
+    for (int i = 0; i < SAMPLES; i++) {
         points[3 * i] = rows[ROW * (i / 8) + i % 8];
         points[3 * i + 1] = rows[ROW * (i / 8) + 8];
         points[3 * i + 2] = rows[ROW * (i / 8) + 9];
+        for (int k = 0; k < 6; k++)
+            boxes[6 * i + k] = points[3 * i + k % 3] + (k < 3 ? 0.0f : (float)code_uniform(&state->random));
     }
-    hewn_code *code = code_with(state->device, field, root, HEWN_NUMBERS_IN_BUFFER);
-    GPU_TEST_TRY(hewn_code_eval_points(state->device, code, points, COUNT, values, &error));
-    GPU_TEST_TRY(hewn_code_eval_gradients(state->device, code, points, COUNT, gradients, &error));
-    run_rows(state->device, code, rows, ROWS, signs);
-    hewn_code_destroy(state->device, &code);
-    code = code_with(state->device, field, root, HEWN_NUMBERS_IN_CODE);
-    run_rows(state->device, code, rows, ROWS, fixed_signs);
-    hewn_code_destroy(state->device, &code);
-    assert_memory_equal(signs, fixed_signs, sizeof signs);
-    for (int i = 0; i < COUNT; i++) {
-        if (!code_same(values[i], gradients[4 * i]))
-            fail_msg("%s: value %.9g, with gradient %.9g", name, (double)values[i], (double)gradients[4 * i]);
-        if (!code_is_denormal(values[i]) && (signs[i / 8] >> i % 8 & 1) != (values[i] < 0))
-            fail_msg("%s: value %.9g, sign bit %u", name, (double)values[i], signs[i / 8] >> i % 8 & 1);
+    compute_bits(state, field, root, HEWN_NUMBERS_IN_BUFFER, rows, points, boxes, &got);
+    compute_bits(state, field, root, HEWN_NUMBERS_IN_CODE, rows, points, boxes, &fixed);
+    check_same(&got, &fixed, name);
+    for (int i = 0; i < SAMPLES; i++) {
+        float value = got.values[i];
+        if (!code_same(value, got.gradients[4 * i]))
+            fail_msg("%s: value %.9g, with gradient %.9g", name, (double)value, (double)got.gradients[4 * i]);
+        if (!code_is_denormal(value) && (got.signs[i / 8] >> i % 8 & 1) != (value < 0))
+            fail_msg("%s: value %.9g, sign bit %u", name, (double)value, got.signs[i / 8] >> i % 8 & 1);
     }
 }
 
@@ -284,33 +318,13 @@ static void check_values(fixture *state, const hewn_field *field, hewn_node root
     }
 }
 
-static hewn_node many_shapes(hewn_field *field, uint64_t *random, int count)
-{
-    hewn_node all = hewn_sphere(field, 0.3);
-    for (int i = 1; i < count; i++) {
-        double size = code_between(random, 0.05, 0.2), at[3];
-        for (int k = 0; k < 3; k++)
-            at[k] = code_between(random, -1, 1);
-        hewn_node shape = i % 3 == 0   ? hewn_sphere(field, size)
-                          : i % 3 == 1 ? hewn_box_shape(field, size, size, 2 * size)
-                                       : hewn_torus(field, size, size / 4);
-        if (i % 5 == 0)
-            shape = hewn_rotate(field, shape, 1, at[0], at[1], size * 9);
-        shape = hewn_translate(field, shape, at[0], at[1], at[2]);
-        all = i % 4 == 0   ? hewn_smooth_union(field, all, shape, HEWN_BLEND_QUADRATIC, 0.05)
-              : i % 7 == 0 ? hewn_difference(field, all, shape)
-                           : hewn_union(field, all, shape);
-    }
-    return all;
-}
-
 static void many_shapes_compile(void **test_state)
 {
     fixture *state = *test_state;
     hewn_field *field;
     GPU_TEST_TRY(hewn_field_create(&field, &error));
     int count = gpu_test_long() ? 1000 : 100;
-    hewn_node root = many_shapes(field, &state->random, count);
+    hewn_node root = code_many_shapes(field, &state->random, count);
     check_values(state, field, root, 1e-5, count == 100 ? "100 shapes" : "1,000 shapes");
     hewn_field_destroy(&field);
 }
@@ -321,7 +335,7 @@ static void parameters_may_outgrow_uniforms(void **test_state)
     fixture *state = *test_state;
     hewn_field *field;
     GPU_TEST_TRY(hewn_field_create(&field, &error));
-    hewn_node root = many_shapes(field, &state->random, 8);
+    hewn_node root = code_many_shapes(field, &state->random, 8);
     const float point[3] = {0.25f, 0.5f, 0.125f};
     const uint64_t range = state->device->max_uniform_range;
     float values[3];

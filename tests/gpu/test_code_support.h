@@ -129,6 +129,27 @@ static inline hewn_field *code_random_graph(uint64_t *state, size_t size, hewn_n
     return field;
 }
 
+/* Shapes in a cube of +-1, combined in every way; the same ones for the same state. */
+static inline hewn_node code_many_shapes(hewn_field *field, uint64_t *random, int count)
+{
+    hewn_node all = hewn_sphere(field, 0.3);
+    for (int i = 1; i < count; i++) {
+        double size = code_between(random, 0.05, 0.2), at[3];
+        for (int k = 0; k < 3; k++)
+            at[k] = code_between(random, -1, 1);
+        hewn_node shape = i % 3 == 0   ? hewn_sphere(field, size)
+                          : i % 3 == 1 ? hewn_box_shape(field, size, size, 2 * size)
+                                       : hewn_torus(field, size, size / 4);
+        if (i % 5 == 0)
+            shape = hewn_rotate(field, shape, 1, at[0], at[1], size * 9);
+        shape = hewn_translate(field, shape, at[0], at[1], at[2]);
+        all = i % 4 == 0   ? hewn_smooth_union(field, all, shape, HEWN_BLEND_QUADRATIC, 0.05)
+              : i % 7 == 0 ? hewn_difference(field, all, shape)
+                           : hewn_union(field, all, shape);
+    }
+    return all;
+}
+
 static inline bool code_is_denormal(float a)
 {
     return a != 0 && fabsf(a) < FLT_MIN;

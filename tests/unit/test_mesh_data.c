@@ -1,5 +1,8 @@
-/* Meshes of the test data: what was counted in them by others (STATS.txt) is what the half-edge mesh has. */
+/* Meshes of the test data: what was counted in them by others (STATS.txt) is what the half-edge mesh has, also after a
+ * way through every format that can hold it. */
 #include "test_mesh_half.h"
+
+#include <unistd.h>
 
 #include "hewn/io.h"
 
@@ -36,61 +39,6 @@ static bool parse_stats(const char *line, stats *out)
     return true;
 }
 
-/* An OFF file as polygons, comments and colours passed over; NULL where it cannot be read. */
-static bool next_line(FILE *file, char line[PATH])
-{
-    while (fgets(line, PATH, file)) {
-        const char *at = line + strspn(line, " \t\r\n");
-        if (*at != '\0' && *at != '#')
-            return true;
-    }
-    return false;
-}
-
-static hewn_mesh *read_off(const char *path, hewn_result *result, hewn_error *reason)
-{
-    char line[PATH];
-    unsigned verts = 0, faces = 0;
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    assert_true(next_line(file, line) && strstr(line, "OFF"));
-    assert_true(next_line(file, line) && sscanf(line, "%u %u", &verts, &faces) == 2);
-    double *positions = calloc(verts + 1u, 3 * sizeof *positions);
-    uint64_t *first = calloc(faces + 1u, sizeof *first);
-    uint32_t *corners = calloc(faces + 1u, 16 * sizeof *corners);
-    for (unsigned v = 0; v < verts; v++) {
-        double *at = positions + 3 * v;
-        assert_true(next_line(file, line) && sscanf(line, "%lf %lf %lf", at, at + 1, at + 2) == 3);
-    }
-    for (unsigned f = 0; f < faces; f++) {
-        assert_true(next_line(file, line));
-        char *at = line;
-        uint64_t degree = strtoul(at, &at, 10);
-        assert_true(degree <= 16);
-        first[f + 1] = first[f] + degree;
-        for (uint64_t i = first[f]; i < first[f + 1]; i++)
-            corners[i] = (uint32_t)strtoul(at, &at, 10);
-    }
-    fclose(file);
-    const hewn_polygons polygons = {verts, positions, faces, first, corners};
-    hewn_mesh *mesh;
-    *result = hewn_mesh_from_polygons(&polygons, &mesh, reason);
-    free(positions);
-    free(first);
-    free(corners);
-    return mesh;
-}
-
-static hewn_mesh *read_other(const char *path, hewn_result *result, hewn_error *reason)
-{
-    hewn_triangles triangles;
-    hewn_mesh *mesh = NULL;
-    assert_works(hewn_mesh_read(path, &triangles, error));
-    *result = hewn_mesh_from_triangles(&triangles, &mesh, reason);
-    hewn_triangles_destroy(&triangles);
-    return mesh;
-}
-
 static uint32_t boundary_edges(const hewn_mesh *mesh)
 {
     uint32_t count = 0;
@@ -99,42 +47,160 @@ static uint32_t boundary_edges(const hewn_mesh *mesh)
     return count;
 }
 
-/* Returns whether the file was compared. */
-static bool compare(const char *folder, const stats *wanted)
+/* --- round trips -------------------------------------------------------------------------------------------------- */
+
+typedef struct format {
+    const char *extension;
+    bool polygons, doubles, shared; /* shared: vertices keep their numbers */
+} format;
+
+static const format formats[] = {{"obj", true, true, true},
+                                 {"ply", true, true, true},
+                                 {"off", true, true, true},
+                                 {"glb", false, false, true},
+                                 {"stl", false, false, false}};
+
+static void assert_same_position(const double *was, const double *is, bool doubles)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        double wanted = doubles ? was[axis] : (double)(float)was[axis];
+        assert_true(wanted == is[axis]);
+    }
+}
+
+/* The same vertices in the same order, and the same faces. */
+static void assert_same_model(const hewn_model *was, const hewn_model *is, bool doubles)
+{
+    assert_int_equal(is->vertex_count, was->vertex_count);
+    assert_int_equal(is->face_count, was->face_count);
+    assert_int_equal(hewn_model_corner_count(is), hewn_model_corner_count(was));
+    for (uint64_t v = 0; v < was->vertex_count; v++)
+        assert_same_position(was->positions + 3 * v, is->positions + 3 * v, doubles);
+    for (uint64_t c = 0; c < hewn_model_corner_count(was); c++)
+        assert_int_equal(is->corners[c], was->corners[c]);
+    for (uint64_t f = 0; was->first && is->first && f <= was->face_count; f++)
+        assert_true(is->first[f] == was->first[f]);
+}
+
+/* The same triangles, corner by corner, whatever the vertices' numbers. */
+static void assert_same_triangles(const hewn_triangles *was, const hewn_model *is)
+{
+    assert_int_equal(is->face_count, was->triangle_count);
+    assert_null(is->first);
+    for (uint64_t c = 0; c < 3 * was->triangle_count; c++)
+        for (int axis = 0; axis < 3; axis++)
+            assert_true((double)was->positions[3 * (size_t)was->indices[c] + axis] ==
+                        is->positions[3 * (size_t)is->corners[c] + axis]);
+}
+
+static bool bits_less(const float *a, const float *b)
+{
+    return a[0] != b[0] ? a[0] < b[0] : a[1] != b[1] ? a[1] < b[1] : a[2] < b[2];
+}
+
+static int by_position(const void *a, const void *b)
+{
+    const float *left = a, *right = b;
+    return bits_less(right, left) - bits_less(left, right);
+}
+
+/* Whether no two vertices round to the same floats: else a format without shared vertices must merge them. */
+static bool positions_differ(const hewn_triangles *triangles)
+{
+    float *sorted = malloc((triangles->vertex_count + 1) * 3 * sizeof *sorted);
+    assert_non_null(sorted);
+    memcpy(sorted, triangles->positions, triangles->vertex_count * 3 * sizeof *sorted);
+    qsort(sorted, triangles->vertex_count, 3 * sizeof *sorted, by_position);
+    bool differ = true;
+    for (uint64_t v = 1; v < triangles->vertex_count; v++)
+        differ = differ && by_position(sorted + 3 * v - 3, sorted + 3 * v) != 0;
+    free(sorted);
+    return differ;
+}
+
+static void assert_same_topology(const hewn_mesh *was, const hewn_model *model, uint32_t isolated)
+{
+    hewn_mesh *is;
+    assert_works(hewn_mesh_from_model(model, NULL, &is, NULL, error));
+    assert_int_equal(euler_number(is), euler_number(was) - isolated);
+    assert_int_equal(boundary_edges(is), boundary_edges(was));
+    hewn_mesh_destroy(&is);
+}
+
+static void round_trip(const hewn_model *model, const hewn_mesh *mesh, uint32_t isolated, const format *format)
+{
+    char path[64];
+    hewn_model again;
+    hewn_triangles triangles;
+    snprintf(path, sizeof path, "round_trip_%d.%s", (int)getpid(), format->extension);
+    assert_works(hewn_model_write(model, path, NULL, error));
+    assert_works(hewn_model_read(path, NULL, &again, error));
+    assert_works(hewn_triangles_from_model(model, &triangles, error));
+    unlink(path);
+    if (format->polygons)
+        assert_same_model(model, &again, format->doubles);
+    else
+        assert_same_triangles(&triangles, &again);
+    if (format->shared) {
+        assert_int_equal(again.vertex_count, model->vertex_count);
+        assert_same_topology(mesh, &again, 0);
+    } else if (positions_differ(&triangles)) {
+        assert_int_equal(again.vertex_count, model->vertex_count - isolated);
+        assert_same_topology(mesh, &again, isolated);
+    }
+    hewn_triangles_destroy(&triangles);
+    hewn_model_destroy(&again);
+}
+
+/* --- counts ------------------------------------------------------------------------------------------------------- */
+
+/* Edges with more than two faces, or two that run the same way, are split and counted, and what is left is manifold. */
+static void compare_split(const hewn_model *model, const stats *wanted)
+{
+    hewn_mesh *mesh;
+    hewn_error reason;
+    hewn_repair_report report;
+    assert_int_equal(hewn_mesh_from_model(model, NULL, &mesh, NULL, &reason), HEWN_BAD_INPUT);
+    assert_true(strstr(reason.message, "edge") != NULL);
+    hewn_repair_desc desc = hewn_repair_desc_default();
+    assert_works(hewn_mesh_from_model(model, &desc, &mesh, &report, error));
+    assert_valid(mesh);
+    if (wanted->non_manifold > 0)
+        assert_true(report.non_manifold_edges > 0);
+    if (wanted->flipped > 0)
+        assert_true(report.turned_faces + report.one_sided_cuts + report.non_manifold_edges > 0);
+    hewn_mesh_destroy(&mesh);
+}
+
+static void compare(const char *folder, const stats *wanted)
 {
     char path[PATH + 256];
-    hewn_error reason = {0};
-    hewn_result result = HEWN_OK;
+    hewn_model model;
+    hewn_mesh *mesh;
     snprintf(path, sizeof path, "%s/%s", folder, wanted->name);
-    const char *dot = strrchr(wanted->name, '.');
-    bool off = strcmp(dot, ".off") == 0;
-    if (!off && hewn_mesh_format_of(path) == HEWN_MESH_UNKNOWN)
-        return false;
-    hewn_mesh *mesh = off ? read_off(path, &result, &reason) : read_other(path, &result, &reason);
+    assert_works(hewn_model_read(path, NULL, &model, error));
+    assert_int_equal(model.vertex_count, wanted->verts);
+    assert_int_equal(model.face_count, wanted->faces);
     if (wanted->non_manifold > 0 || wanted->flipped > 0) {
-        assert_int_equal(result, HEWN_BAD_INPUT);
-        assert_true(strstr(reason.message, "edge") != NULL);
-        return true;
+        compare_split(&model, wanted);
+        hewn_model_destroy(&model);
+        return;
     }
-    if (result != HEWN_OK)
-        fail_msg("%s: %s", wanted->name, reason.message);
+    assert_works(hewn_mesh_from_model(&model, NULL, &mesh, NULL, error));
     assert_valid(mesh);
-    /* Other formats come as triangles, cut from polygons one by one: counts of faces are those of OFF files only. */
-    uint32_t used = 0;
+    uint32_t isolated = 0;
     for (uint32_t v = 0; v < hewn_mesh_vert_bound(mesh); v++)
-        used += hewn_vert_half(mesh, (hewn_vert){v}).id != HEWN_NONE;
-    assert_int_equal(hewn_mesh_vert_bound(mesh), wanted->verts);
-    if (off)
-        assert_int_equal(hewn_mesh_face_count(mesh), wanted->faces);
-    if (used == wanted->verts)
-        assert_int_equal(euler_number(mesh), wanted->euler);
+        isolated += hewn_vert_half(mesh, (hewn_vert){v}).id == HEWN_NONE;
+    assert_int_equal(euler_number(mesh) - isolated, wanted->euler);
     assert_int_equal(boundary_edges(mesh), wanted->boundary);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        round_trip(&model, mesh, isolated, &formats[i]);
     int64_t before = euler_number(mesh);
     assert_works(hewn_mesh_triangulate(mesh, error));
     assert_valid(mesh);
     assert_int_equal(euler_number(mesh), before);
     hewn_mesh_destroy(&mesh);
-    return true;
+    hewn_model_destroy(&model);
 }
 
 static void test_counts(void **state)
@@ -155,8 +221,11 @@ static void test_counts(void **state)
         bool chosen = false;
         for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
             chosen |= strncmp(line, folders[i], strlen(folders[i])) == 0;
-        if (chosen && parse_stats(line, &wanted))
-            compared += compare(folder, &wanted);
+        if (chosen && parse_stats(line, &wanted)) {
+            print_message("# %s\n", wanted.name);
+            compare(folder, &wanted);
+            compared++;
+        }
     }
     fclose(file);
     print_message("# %u files compared\n", compared);

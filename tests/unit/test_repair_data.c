@@ -37,7 +37,7 @@ static bool read_file(const char *folder, const char *name, builder *out)
     hewn_triangles mesh;
     hewn_error error = {0};
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    if (hewn_mesh_read(path, &mesh, &error) != HEWN_OK) {
+    if (hewn_triangles_read(path, &mesh, &error) != HEWN_OK) {
         print_message("# %s cannot be read: %s\n", name, error.message);
         return false;
     }

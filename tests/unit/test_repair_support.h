@@ -2,6 +2,7 @@
 #ifndef HEWN_TEST_REPAIR_SUPPORT_H
 #define HEWN_TEST_REPAIR_SUPPORT_H
 
+#include "hewn/check.h"
 #include "hewn/repair.h"
 #include "test_mesh_support.h"
 
@@ -148,21 +149,19 @@ static inline repaired repair(const hewn_polygons *soup, const hewn_repair_desc 
 {
     repaired result;
     hewn_error error = {0};
-    hewn_triangles triangles;
     if (hewn_mesh_from_soup(soup, desc, &result.mesh, &result.report, &result.origins, &error) != HEWN_OK)
         fail_msg("%s", error.message);
     if (hewn_mesh_validate(result.mesh, &error) != HEWN_OK)
         fail_msg("%s", error.message);
     check_origins(soup, &result, desc && desc->weld);
-    result.certificate = (hewn_certificate){0};
-    hewn_result cut = hewn_mesh_to_triangles(result.mesh, &triangles, &error);
-    if (cut != HEWN_OK && strstr(error.message, "cannot be cut into triangles"))
-        return result; /* a polygon whose diagonals all exist: what could be checked was */
-    if (cut != HEWN_OK)
+    double *positions;
+    hewn_polygons polygons = polygons_of(&result, &positions);
+    hewn_check *check;
+    if (hewn_check_polygons(&polygons, &(hewn_check_desc){.skip_self_intersections = true}, &check, &error) != HEWN_OK)
         fail_msg("%s", error.message);
-    if (hewn_certify(&triangles, NULL, &result.certificate, &error) != HEWN_OK)
-        fail_msg("%s", error.message);
-    hewn_triangles_destroy(&triangles);
+    result.certificate = check->certificate;
+    hewn_check_destroy(&check);
+    hewn_free(positions);
     assert_true(result.certificate.manifold);
     assert_true(result.certificate.oriented);
     return result;

@@ -109,7 +109,7 @@ static void test_import(void **state)
     /* What an imported file says of itself does not speak for the scene. */
     hewn_box box;
     assert_false(hewn_scene_bounds(scene, &box));
-    assert_string_equal(hewn_scene_units(scene), "m");
+    assert_string_equal(hewn_scene_unit(scene)->name, "m");
     assert_int_equal(hewn_scene_up(scene), HEWN_AXIS_PLUS_Y);
     assert_null(hewn_scene_file(scene, 7));
     hewn_scene_destroy(&scene);
@@ -466,7 +466,7 @@ static void test_declarations(void **state)
         snprintf(text, sizeof text, "units('%s') up('%s') bounds(-1, -2, -3, 4, 5, 6) return x", units[i].name,
                  ups[i % 3]);
         scene = test_load_lua(text);
-        assert_string_equal(hewn_scene_units(scene), units[i].name);
+        assert_string_equal(hewn_scene_unit(scene)->name, units[i].name);
         assert_true(hewn_scene_metres_per_unit(scene) == units[i].metres);
         assert_int_equal(hewn_scene_up(scene), i % 3);
         assert_true(hewn_scene_bounds(scene, &box));

@@ -250,7 +250,7 @@ static bool read_data(const char *name, hewn_triangles *mesh)
         return false;
     snprintf(path, sizeof path, "%s/%s", folder, name);
     hewn_error error = {0};
-    if (hewn_mesh_read(path, mesh, &error) != HEWN_OK)
+    if (hewn_triangles_read(path, mesh, &error) != HEWN_OK)
         fail_msg("%s: %s", path, error.message);
     return true;
 }

@@ -1,9 +1,12 @@
 #include "io/shim/gltf.h"
 
+#include <deque>
 #include <fstream>
 #include <memory>
 #include <new>
+#include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,6 +29,11 @@ using nlohmann::json;
 namespace
 {
 
+/* Where a mesh says which of its vertices are one: Khronos' vendor extension, and for surfaces that it does not admit
+ * the same object in the mesh's extras. */
+const char *const manifold_extension = "EXT_mesh_manifold";
+const char *const own_topology = "hewn_topology";
+
 /* The first line of a library's message. */
 std::string first_line(const std::string &text)
 {
@@ -38,52 +46,142 @@ std::string as_utf8(const char *text)
     return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
-/* --- making ----------------------------------------------------------------------------------------------------------
- */
+/* --- making ------------------------------------------------------------------------------------------------------- */
 
-/* Appends a view and an accessor on it, and returns the accessor's number. */
-int add_accessor(tinygltf::Model &model, size_t &offset, uint64_t count, int type, int component, size_t item,
-                 int target)
+/* Appends a view and returns its number. */
+int add_view(tinygltf::Model &model, size_t &offset, size_t length, int target)
 {
     tinygltf::BufferView view;
     view.buffer = 0;
     view.byteOffset = offset;
-    view.byteLength = static_cast<size_t>(count) * item;
+    view.byteLength = length;
     view.target = target;
-    offset += view.byteLength;
+    offset += length;
+    model.bufferViews.push_back(view);
+    return static_cast<int>(model.bufferViews.size()) - 1;
+}
+
+/* Appends an accessor and returns its number. */
+int add_accessor(tinygltf::Model &model, int view, size_t offset, uint64_t count, int type, int component)
+{
     tinygltf::Accessor accessor;
-    accessor.bufferView = static_cast<int>(model.bufferViews.size());
+    accessor.bufferView = view;
+    accessor.byteOffset = offset;
     accessor.componentType = component;
     accessor.count = static_cast<size_t>(count);
     accessor.type = type;
-    model.bufferViews.push_back(view);
     model.accessors.push_back(accessor);
     return static_cast<int>(model.accessors.size()) - 1;
 }
 
-/* The mesh of `desc`; returns the length of its buffer. */
-size_t add_mesh(tinygltf::Model &model, const hewn_gltf_desc &desc, const std::string &name)
+int vector_type(int components)
 {
-    size_t length = 0;
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    int positions = add_accessor(model, length, desc.vertex_count, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT,
-                                 12, TINYGLTF_TARGET_ARRAY_BUFFER);
+    switch (components) {
+    case 1: return TINYGLTF_TYPE_SCALAR;
+    case 2: return TINYGLTF_TYPE_VEC2;
+    case 3: return TINYGLTF_TYPE_VEC3;
+    case 4: return TINYGLTF_TYPE_VEC4;
+    case 9: return TINYGLTF_TYPE_MAT3;
+    case 16: return TINYGLTF_TYPE_MAT4;
+    default: throw std::logic_error("a number of components that glTF has no type for");
+    }
+}
+
+/* Views and accessors of everything that belongs to vertices. */
+void add_streams(tinygltf::Model &model, size_t &length, const hewn_gltf_desc &desc, tinygltf::Primitive &primitive)
+{
+    size_t count = static_cast<size_t>(desc.vertex_count);
+    int positions = add_accessor(model, add_view(model, length, 12 * count, TINYGLTF_TARGET_ARRAY_BUFFER), 0, count,
+                                 TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT);
     model.accessors[positions].minValues.assign(desc.lo, desc.lo + 3);
     model.accessors[positions].maxValues.assign(desc.hi, desc.hi + 3);
     primitive.attributes["POSITION"] = positions;
-    if (desc.has_normals)
-        primitive.attributes["NORMAL"] = add_accessor(model, length, desc.vertex_count, TINYGLTF_TYPE_VEC3,
-                                                      TINYGLTF_COMPONENT_TYPE_FLOAT, 12, TINYGLTF_TARGET_ARRAY_BUFFER);
-    primitive.indices =
-        add_accessor(model, length, desc.index_count, TINYGLTF_TYPE_SCALAR,
-                     desc.short_indices ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                     desc.short_indices ? 2 : 4, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+    for (size_t i = 0; i < desc.stream_count; i++) {
+        const hewn_gltf_stream &stream = desc.streams[i];
+        int view = add_view(model, length, count * stream.item, TINYGLTF_TARGET_ARRAY_BUFFER);
+        if (stream.component_type != TINYGLTF_COMPONENT_TYPE_FLOAT)
+            model.bufferViews[view].byteStride = stream.item; /* the items may be padded */
+        int accessor = add_accessor(model, view, 0, count, vector_type(stream.components), stream.component_type);
+        model.accessors[accessor].normalized = stream.normalised;
+        primitive.attributes[as_utf8(stream.semantic)] = accessor;
+    }
+}
+
+/* What tinygltf's types have no place for, and goes to the JSON itself. */
+struct additions {
+    std::optional<json> sparse;   /* of the accessor that has merges */
+    size_t sparse_accessor = 0;   /* its number */
+    std::optional<json> topology; /* EXT_mesh_manifold's object */
+};
+
+/* The unsplit vertices' indices: those of the primitives, but for the places of merges. */
+void add_topology(tinygltf::Model &model, size_t &length, const hewn_gltf_desc &desc, int index_view,
+                  const tinygltf::Primitive &primitive, additions &out)
+{
+    int type = desc.short_indices ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    int indices = add_accessor(model, index_view, 0, desc.index_count, TINYGLTF_TYPE_SCALAR, type);
+    json &topology = out.topology.emplace();
+    topology["manifoldPrimitive"] = {
+        {"indices", indices}, {"mode", 4}, {"attributes", {{"POSITION", primitive.attributes.at("POSITION")}}}};
+    if (desc.merge_count == 0)
+        return;
+    length = (length + 3) & ~size_t(3);
+    size_t count = static_cast<size_t>(desc.merge_count);
+    int places = add_view(model, length, 4 * count, 0);
+    int vertices = add_view(model, length, (desc.short_indices ? 2 : 4) * count, 0);
+    out.sparse_accessor = static_cast<size_t>(indices);
+    out.sparse = json{{"count", count},
+                      {"indices", {{"bufferView", places}, {"componentType", TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT}}},
+                      {"values", {{"bufferView", vertices}}}};
+    topology["mergeIndices"] =
+        add_accessor(model, places, 0, count, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+    topology["mergeValues"] = add_accessor(model, vertices, 0, count, TINYGLTF_TYPE_SCALAR, type);
+}
+
+/* The mesh of `desc`; returns the length of its buffer. */
+size_t add_mesh(tinygltf::Model &model, const hewn_gltf_desc &desc, const std::string &name, additions &out)
+{
+    size_t length = 0, item = desc.short_indices ? 2 : 4;
+    tinygltf::Primitive primitive;
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    add_streams(model, length, desc, primitive);
+    int view =
+        add_view(model, length, static_cast<size_t>(desc.index_count) * item, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     tinygltf::Mesh mesh;
     mesh.name = name;
-    mesh.primitives.push_back(primitive);
+    int material = 0;
+    for (size_t i = 0; i < desc.run_count; i++) {
+        const hewn_gltf_run &run = desc.runs[i];
+        primitive.indices = add_accessor(
+            model, view, static_cast<size_t>(run.first_index) * item, run.index_count, TINYGLTF_TYPE_SCALAR,
+            desc.short_indices ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+        primitive.material = run.material ? material++ : -1;
+        mesh.primitives.push_back(primitive);
+    }
+    if (desc.topology != HEWN_GLTF_NO_TOPOLOGY)
+        add_topology(model, length, desc, view, primitive, out);
     model.meshes.push_back(mesh);
     return length;
+}
+
+/* Puts into the document what stands beside tinygltf's part of it. */
+void complete(json &document, const hewn_gltf_desc &desc, size_t length, additions &more)
+{
+    if (length > 0)
+        document["buffers"] = json::array({{{"byteLength", length}}});
+    for (size_t i = 0; length > 0 && i < desc.run_count; i++)
+        if (desc.runs[i].material)
+            document["materials"].push_back({{"name", as_utf8(desc.runs[i].material)}});
+    if (more.sparse)
+        document["accessors"][more.sparse_accessor]["sparse"] = std::move(*more.sparse);
+    if (more.topology && desc.topology == HEWN_GLTF_MANIFOLD) {
+        document["extensionsUsed"] = json::array({manifold_extension});
+        document["meshes"][0]["extensions"][manifold_extension] = std::move(*more.topology);
+    } else if (more.topology) {
+        document["meshes"][0]["extras"][own_topology] = std::move(*more.topology);
+    }
+    if (desc.conversion)
+        document["asset"]["extras"]["conversion"] = json::parse(desc.conversion);
 }
 
 /* tinygltf wants to own a buffer's bytes; here they are streamed later, so only their number is added to its JSON. */
@@ -96,8 +194,9 @@ std::string compose(const hewn_gltf_desc &desc)
     tinygltf::Scene scene;
     scene.name = name;
     size_t length = 0;
+    additions more;
     if (desc.index_count > 0) {
-        length = add_mesh(model, desc, name);
+        length = add_mesh(model, desc, name, more);
         tinygltf::Node node;
         node.name = name;
         node.mesh = 0;
@@ -110,13 +209,11 @@ std::string compose(const hewn_gltf_desc &desc)
     tinygltf::TinyGLTF writer;
     writer.WriteGltfSceneToStream(&model, text, false, false);
     json document = json::parse(text.str());
-    if (length > 0)
-        document["buffers"] = json::array({{{"byteLength", length}}});
+    complete(document, desc, length, more);
     return document.dump();
 }
 
-/* --- reading ---------------------------------------------------------------------------------------------------------
- */
+/* --- reading ------------------------------------------------------------------------------------------------------ */
 
 struct bad_gltf {
     hewn_result code;
@@ -150,20 +247,24 @@ void keep_scalars(const json &from, json &to, const char *key)
 json keep_primitive(const json &from)
 {
     json to = json::object();
-    keep_scalar(from, to, "mode");
-    keep_scalar(from, to, "indices");
+    for (const char *key : {"mode", "indices", "material"})
+        keep_scalar(from, to, key);
     json &attributes = to["attributes"] = json::object();
     auto found = from.find("attributes");
-    if (found != from.end() && found->is_object()) {
-        keep_scalar(*found, attributes, "POSITION");
-        keep_scalar(*found, attributes, "NORMAL");
-    }
+    if (found == from.end() || !found->is_object())
+        return to;
+    for (const char *key : {"POSITION", "NORMAL", "TEXCOORD_0", "COLOR_0"})
+        keep_scalar(*found, attributes, key);
+    for (auto item = found->begin(); item != found->end(); ++item)
+        if (item.key().rfind('_', 0) == 0)
+            keep_scalar(*found, attributes, item.key().c_str());
     return to;
 }
 
 json keep_mesh(const json &from)
 {
     json to = json::object();
+    keep_scalar(from, to, "name");
     json &primitives = to["primitives"] = json::array();
     auto found = from.find("primitives");
     if (found == from.end() || !found->is_array())
@@ -179,6 +280,7 @@ json keep_mesh(const json &from)
 json keep_node(const json &from)
 {
     json to = json::object();
+    keep_scalar(from, to, "name");
     keep_scalar(from, to, "mesh");
     for (const char *key : {"children", "matrix", "translation", "rotation", "scale"})
         keep_scalars(from, to, key);
@@ -198,6 +300,13 @@ json keep_view(const json &from)
     json to = json::object();
     for (const char *key : {"buffer", "byteOffset", "byteLength", "byteStride"})
         keep_scalar(from, to, key);
+    return to;
+}
+
+json keep_material(const json &from)
+{
+    json to = json::object();
+    keep_scalar(from, to, "name");
     return to;
 }
 
@@ -225,7 +334,7 @@ void keep_all(const json &from, json &to, const char *key, json (*keep)(const js
     }
 }
 
-/* Extensions that leave geometry alone may be required without being known. */
+/* Extensions that are known, and those that leave geometry alone, may be required. */
 void check_extensions(const json &document)
 {
     auto found = document.find("extensionsRequired");
@@ -233,7 +342,7 @@ void check_extensions(const json &document)
         return;
     for (const json &item : *found) {
         std::string name = item.is_string() ? item.get<std::string>() : "?";
-        bool harmless = false;
+        bool harmless = name == "KHR_mesh_quantization" || name == manifold_extension;
         for (const char *prefix : {"KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "MSFT_texture_"})
             harmless = harmless || name.rfind(prefix, 0) == 0;
         if (!harmless)
@@ -243,14 +352,22 @@ void check_extensions(const json &document)
 
 /* The parts of hewn_gltf, and the memory behind its pointers. */
 struct parsed {
-    std::vector<std::string> uris;
+    std::deque<std::string> texts; /* which stay where they are */
     std::vector<hewn_gltf_buffer> buffers;
     std::vector<hewn_gltf_view> views;
     std::vector<hewn_gltf_accessor> accessors;
+    std::vector<hewn_gltf_attribute> attributes;
     std::vector<hewn_gltf_primitive> primitives;
     std::vector<hewn_gltf_mesh> meshes;
     std::vector<hewn_gltf_node> nodes;
     std::vector<int> children, roots;
+    std::vector<const char *> materials;
+
+    const char *keep(const std::string &text)
+    {
+        texts.push_back(text);
+        return texts.back().c_str();
+    }
 };
 
 /* Buffers are read here and not by tinygltf, which would copy the binary chunk once for each. */
@@ -261,15 +378,13 @@ void take_buffers(const json &document, parsed &out)
         return;
     if (!found->is_array() || found->size() > most_items)
         throw bad_gltf{HEWN_BAD_INPUT, "\"buffers\" is not an array of usable length"};
-    out.uris.reserve(found->size()); /* c_str() of each must stay put */
     for (const json &item : *found) {
         auto length = item.is_object() ? item.find("byteLength") : item.end();
         if (!item.is_object() || length == item.end() || !length->is_number_unsigned())
             throw bad_gltf{HEWN_BAD_INPUT, "a buffer without a byteLength"};
         auto uri = item.find("uri");
         bool named = uri != item.end() && uri->is_string();
-        out.uris.push_back(named ? uri->get<std::string>() : std::string());
-        out.buffers.push_back({named ? out.uris.back().c_str() : nullptr, length->get<uint64_t>()});
+        out.buffers.push_back({named ? out.keep(uri->get<std::string>()) : nullptr, length->get<uint64_t>()});
     }
 }
 
@@ -295,32 +410,23 @@ void compose_matrix(const tinygltf::Node &node, double m[16])
     m[15] = 1;
 }
 
-int attribute(const tinygltf::Primitive &primitive, const char *name)
+void take_primitive(const tinygltf::Primitive &primitive, parsed &out)
 {
-    auto found = primitive.attributes.find(name);
-    return found == primitive.attributes.end() ? HEWN_GLTF_NONE : found->second;
+    hewn_gltf_primitive taken{primitive.mode,     HEWN_GLTF_NONE,        primitive.indices,
+                              primitive.material, out.attributes.size(), 0};
+    for (const auto &attribute : primitive.attributes) {
+        if (attribute.first == "POSITION")
+            taken.positions = attribute.second;
+        else
+            out.attributes.push_back({out.keep(attribute.first), attribute.second});
+    }
+    taken.attribute_count = out.attributes.size() - taken.first_attribute;
+    out.primitives.push_back(taken);
 }
 
-void take_model(const tinygltf::Model &model, parsed &out)
+/* The scene that the document names or else its first; without scenes, all nodes that no other has. */
+void take_roots(const tinygltf::Model &model, parsed &out)
 {
-    for (const auto &view : model.bufferViews)
-        out.views.push_back({view.buffer, view.byteOffset, view.byteLength, view.byteStride});
-    for (const auto &accessor : model.accessors)
-        out.accessors.push_back({accessor.bufferView, accessor.byteOffset, accessor.count, accessor.componentType,
-                                 tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)), false,
-                                 accessor.normalized});
-    for (const auto &mesh : model.meshes) {
-        out.meshes.push_back({out.primitives.size(), mesh.primitives.size()});
-        for (const auto &primitive : mesh.primitives)
-            out.primitives.push_back(
-                {primitive.mode, attribute(primitive, "POSITION"), attribute(primitive, "NORMAL"), primitive.indices});
-    }
-    for (const auto &node : model.nodes) {
-        hewn_gltf_node taken{node.mesh, {}, out.children.size(), node.children.size()};
-        compose_matrix(node, taken.matrix);
-        out.children.insert(out.children.end(), node.children.begin(), node.children.end());
-        out.nodes.push_back(taken);
-    }
     size_t shown = model.defaultScene >= 0 ? static_cast<size_t>(model.defaultScene) : 0;
     if (shown < model.scenes.size()) {
         out.roots = model.scenes[shown].nodes;
@@ -335,12 +441,104 @@ void take_model(const tinygltf::Model &model, parsed &out)
             out.roots.push_back(static_cast<int>(node));
 }
 
-/* tinygltf does not say that an accessor was sparse when that part was left out, so it is noted beforehand. */
-void note_sparse(const json &document, parsed &out)
+void take_model(const tinygltf::Model &model, parsed &out)
 {
-    auto found = document.find("accessors");
-    for (size_t i = 0; found != document.end() && i < out.accessors.size(); i++)
-        out.accessors[i].sparse = (*found)[i].contains("sparse");
+    for (const auto &view : model.bufferViews)
+        out.views.push_back({view.buffer, view.byteOffset, view.byteLength, view.byteStride});
+    for (const auto &accessor : model.accessors) {
+        int components = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type));
+        bool matrix = accessor.type >= TINYGLTF_TYPE_MAT2 && accessor.type <= TINYGLTF_TYPE_MAT4;
+        out.accessors.push_back({accessor.bufferView,
+                                 accessor.byteOffset,
+                                 accessor.count,
+                                 accessor.componentType,
+                                 components,
+                                 matrix,
+                                 accessor.normalized,
+                                 {}});
+    }
+    for (const auto &mesh : model.meshes) {
+        out.meshes.push_back({out.keep(mesh.name), out.primitives.size(), mesh.primitives.size(), false, HEWN_GLTF_NONE,
+                              HEWN_GLTF_NONE});
+        for (const auto &primitive : mesh.primitives)
+            take_primitive(primitive, out);
+    }
+    for (const auto &node : model.nodes) {
+        hewn_gltf_node taken{out.keep(node.name), node.mesh, {}, out.children.size(), node.children.size()};
+        compose_matrix(node, taken.matrix);
+        out.children.insert(out.children.end(), node.children.begin(), node.children.end());
+        out.nodes.push_back(taken);
+    }
+    for (const auto &material : model.materials)
+        out.materials.push_back(out.keep(material.name));
+    take_roots(model, out);
+}
+
+/* --- what tinygltf does not read, or not in full -------------------------------------------------------------------
+ */
+
+/* The member of an object, or null. */
+const json &member(const json &from, const char *key)
+{
+    static const json none;
+    auto found = from.is_object() ? from.find(key) : from.end();
+    return from.is_object() && found != from.end() ? *found : none;
+}
+
+uint64_t size_at(const json &from, const char *key, const char *what)
+{
+    const json &found = member(from, key);
+    if (found.is_null())
+        return 0;
+    if (!found.is_number_unsigned())
+        throw bad_gltf{HEWN_BAD_INPUT, std::string(what) + " with a \"" + key + "\" that is no size"};
+    return found.get<uint64_t>();
+}
+
+/* The number of an item, or none where there is no such member. */
+int index_at(const json &from, const char *key, const char *what)
+{
+    const json &found = member(from, key);
+    if (found.is_null())
+        return HEWN_GLTF_NONE;
+    if (!found.is_number_unsigned() || found.get<uint64_t>() > most_items)
+        throw bad_gltf{HEWN_BAD_INPUT, std::string(what) + " with a \"" + key + "\" that names nothing"};
+    return found.get<int>();
+}
+
+void take_sparse(const json &document, parsed &out)
+{
+    const json &accessors = member(document, "accessors");
+    const char *what = "a sparse accessor";
+    for (size_t i = 0; i < out.accessors.size(); i++) {
+        const json &sparse = member(accessors[i], "sparse");
+        if (sparse.is_null())
+            continue;
+        hewn_gltf_sparse &taken = out.accessors[i].sparse;
+        const json &places = member(sparse, "indices"), &values = member(sparse, "values");
+        taken.count = size_at(sparse, "count", what);
+        taken.place_view = index_at(places, "bufferView", what);
+        taken.place_type = index_at(places, "componentType", what);
+        taken.place_offset = size_at(places, "byteOffset", what);
+        taken.value_view = index_at(values, "bufferView", what);
+        taken.value_offset = size_at(values, "byteOffset", what);
+    }
+}
+
+void take_topologies(const json &document, parsed &out)
+{
+    const json &meshes = member(document, "meshes");
+    for (size_t i = 0; i < out.meshes.size(); i++) {
+        const json &extension = member(member(meshes[i], "extensions"), manifold_extension);
+        const json &found = extension.is_null() ? member(member(meshes[i], "extras"), own_topology) : extension;
+        const json &primitive = member(found, "manifoldPrimitive");
+        if (primitive.is_null())
+            continue;
+        hewn_gltf_mesh &mesh = out.meshes[i];
+        mesh.has_topology = true;
+        mesh.topology_indices = index_at(primitive, "indices", manifold_extension);
+        mesh.topology_positions = index_at(member(primitive, "attributes"), "POSITION", manifold_extension);
+    }
 }
 
 std::unique_ptr<parsed> parse(const char *text, size_t length)
@@ -362,6 +560,7 @@ std::unique_ptr<parsed> parse(const char *text, size_t length)
     keep_all(document, kept, "meshes", keep_mesh);
     keep_all(document, kept, "nodes", keep_node);
     keep_all(document, kept, "scenes", keep_scene);
+    keep_all(document, kept, "materials", keep_material);
     std::string filtered = kept.dump(-1, ' ', false, json::error_handler_t::replace);
     kept = json();
     if (filtered.size() > UINT32_MAX)
@@ -375,7 +574,8 @@ std::unique_ptr<parsed> parse(const char *text, size_t length)
     if (model.asset.version.rfind("2.", 0) != 0)
         throw bad_gltf{HEWN_BAD_INPUT, "glTF version " + as_utf8(model.asset.version.c_str()) + " instead of 2.x"};
     take_model(model, *out);
-    note_sparse(document, *out);
+    take_sparse(document, *out);
+    take_topologies(document, *out);
     return out;
 }
 
@@ -384,6 +584,8 @@ void expose(std::unique_ptr<parsed> from, hewn_gltf *out)
     out->buffers = from->buffers.data();
     out->views = from->views.data();
     out->accessors = from->accessors.data();
+    out->attributes = from->attributes.data();
+    out->materials = from->materials.data();
     out->primitives = from->primitives.data();
     out->meshes = from->meshes.data();
     out->nodes = from->nodes.data();
@@ -392,6 +594,8 @@ void expose(std::unique_ptr<parsed> from, hewn_gltf *out)
     out->buffer_count = from->buffers.size();
     out->view_count = from->views.size();
     out->accessor_count = from->accessors.size();
+    out->attribute_count = from->attributes.size();
+    out->material_count = from->materials.size();
     out->primitive_count = from->primitives.size();
     out->mesh_count = from->meshes.size();
     out->node_count = from->nodes.size();

@@ -10,8 +10,9 @@ extern "C" {
 
 enum { HEWN_NUMBER_ROOM = 32 }; /* bytes that any number printed here fits in */
 
-/* Writes the shortest text that reads back as the same float (finite), without a NUL, and returns its end. */
+/* Writes the shortest text that reads back as the same number (finite), without a NUL, and returns its end. */
 char *hewn_number_print_float(char *to, float value);
+char *hewn_number_print_double(char *to, double value);
 char *hewn_number_print_unsigned(char *to, uint64_t value);
 
 /* Reads a number at `at` and returns what follows it, or NULL where there is none. "+1", ".5", "1.", "inf" and "nan"

@@ -1,0 +1,88 @@
+#include "app/file_arguments.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "base/error.h"
+
+hewn_result hewn_input_argument_read(const hewn_arguments *arguments, const char **out, hewn_error *error)
+{
+    if (arguments->operand_count == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "which file? Give its name");
+    if (arguments->operand_count > 1)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "one file at a time, please; '%s' is one too many",
+                         arguments->operands[1]);
+    *out = arguments->operands[0];
+    return **out ? HEWN_OK : hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
+}
+
+hewn_result hewn_format_parse(const char *text, const char *option, hewn_mesh_format *out, hewn_error *error)
+{
+    *out = strpbrk(text, "./") ? HEWN_MESH_UNKNOWN : hewn_mesh_format_of(text);
+    if (*out != HEWN_MESH_UNKNOWN)
+        return HEWN_OK;
+    return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s is glb, gltf, obj, ply, stl, off or 3mf, not '%s'", option,
+                     text);
+}
+
+static hewn_result read_unit(const hewn_arguments *arguments, const char *name, const hewn_unit **out,
+                             hewn_error *error)
+{
+    const char *text = hewn_arguments_value(arguments, name);
+    if (!text)
+        return HEWN_OK;
+    *out = hewn_unit_find(text);
+    if (*out)
+        return HEWN_OK;
+    return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--%s is one of %s, not '%s'", name, hewn_unit_names(), text);
+}
+
+/* "+Z", and what people write for it: "Z", "z", "+z". */
+static hewn_result read_axis(const hewn_arguments *arguments, const char *name, hewn_axis *axis, const hewn_axis **out,
+                             hewn_error *error)
+{
+    const char *text = hewn_arguments_value(arguments, name);
+    if (!text)
+        return HEWN_OK;
+    const char *letter = text[0] == '+' ? text + 1 : text;
+    char proper[] = {'+', (char)(letter[0] & ~0x20), '\0'};
+    *out = axis;
+    if (strlen(letter) == 1 && hewn_axis_find(proper, axis))
+        return HEWN_OK;
+    return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--%s is +X, +Y or +Z, not '%s'", name, text);
+}
+
+static hewn_result read_output(const hewn_arguments *arguments, hewn_file_job_desc *desc, hewn_error *error)
+{
+    const char *to = hewn_arguments_value(arguments, "to");
+    desc->output = hewn_arguments_value(arguments, "output");
+    desc->report = hewn_arguments_value(arguments, "report");
+    if (!desc->output)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "where should the mesh go? Give -o FILE");
+    if (!desc->output[0] || (desc->report && !desc->report[0]))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
+    if (to)
+        HEWN_TRY(hewn_format_parse(to, "--to", &desc->to, error));
+    bool binary = desc->to == HEWN_MESH_PLY || desc->to == HEWN_MESH_STL;
+    if (strcmp(desc->output, "-") == 0 && binary && isatty(STDOUT_FILENO))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "standard output is a terminal, and %s is binary; send it to a file or a pipe", to);
+    return HEWN_OK;
+}
+
+hewn_result hewn_file_arguments_read(const hewn_arguments *arguments, hewn_file_arguments *out, hewn_error *error)
+{
+    *out = (hewn_file_arguments){0};
+    hewn_file_job_desc *desc = &out->desc;
+    const char *from = hewn_arguments_value(arguments, "from");
+    HEWN_TRY(hewn_input_argument_read(arguments, &desc->input, error));
+    if (from)
+        HEWN_TRY(hewn_format_parse(from, "--from", &desc->from, error));
+    HEWN_TRY(read_output(arguments, desc, error));
+    HEWN_TRY(read_unit(arguments, "unit", &desc->unit, error));
+    HEWN_TRY(read_axis(arguments, "up", &out->up, &desc->up, error));
+    HEWN_TRY(read_unit(arguments, "to-unit", &desc->to_unit, error));
+    HEWN_TRY(read_axis(arguments, "to-up", &out->to_up, &desc->to_up, error));
+    out->quiet = hewn_arguments_has(arguments, "quiet");
+    return HEWN_OK;
+}

@@ -1,0 +1,156 @@
+#include "io/glb_topology.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "base/progress.h"
+
+static hewn_result look_up(const hewn_writing *job, uint64_t done, hewn_error *error)
+{
+    return done % (16 * HEWN_WRITE_BLOCK) == 0 ? hewn_progress_report(job->progress, "write", 0, error) : HEWN_OK;
+}
+
+/* --- equal positions ---------------------------------------------------------------------------------------------- */
+
+/* The bits of a position, -0 made 0. */
+static void get_key(const hewn_writing *job, const hewn_glb_plan *plan, uint64_t vertex, uint32_t key[3])
+{
+    float p[3];
+    hewn_glb_position(job, plan, vertex, p);
+    for (int axis = 0; axis < 3; axis++)
+        p[axis] += 0.0f;
+    memcpy(key, p, sizeof p);
+}
+
+/* As the finaliser of Steele, Lea and Flood 2014 ('Fast splittable pseudorandom number generators'). */
+static uint64_t hash_key(const uint32_t key[3])
+{
+    uint64_t hash = ((uint64_t)key[1] << 32 | key[0]) * 0x9e3779b97f4a7c15u;
+    hash = (hash ^ hash >> 30 ^ key[2]) * 0xbf58476d1ce4e5b9u;
+    hash = (hash ^ hash >> 27) * 0x94d049bb133111ebu;
+    return hash ^ hash >> 31;
+}
+
+static hewn_result find_equal(const hewn_writing *job, const hewn_glb_plan *plan, uint32_t *slots, size_t mask,
+                              bool *out, hewn_error *error)
+{
+    for (uint64_t v = 0; v < job->vertex_count && !*out; v++) {
+        uint32_t key[3], other[3];
+        get_key(job, plan, v, key);
+        size_t at = (size_t)hash_key(key) & mask;
+        for (; slots[at] != HEWN_NONE && !*out; at = (at + 1) & mask) {
+            get_key(job, plan, slots[at], other);
+            *out = memcmp(key, other, sizeof key) == 0;
+        }
+        slots[at] = (uint32_t)v;
+        HEWN_TRY(look_up(job, v, error));
+    }
+    return HEWN_OK;
+}
+
+static hewn_result has_equal_positions(const hewn_writing *job, const hewn_glb_plan *plan, bool *out, hewn_error *error)
+{
+    size_t count = 16;
+    while (count < job->vertex_count + job->vertex_count / 2)
+        count *= 2;
+    uint32_t *slots = hewn_alloc(count, sizeof *slots);
+    if (!slots)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
+    memset(slots, 0xff, count * sizeof *slots);
+    *out = false;
+    hewn_result result = find_equal(job, plan, slots, count - 1, out, error);
+    hewn_free(slots);
+    return result;
+}
+
+/* --- closed manifolds --------------------------------------------------------------------------------------------- */
+
+static int compare(const void *a, const void *b)
+{
+    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The half-edges of triangles by their lesser vertex: from firsts[v] on, each twice the other vertex and, where that
+ * is where it begins, 1. */
+typedef struct half_edges {
+    uint64_t *firsts; /* vertex_count + 1 */
+    uint64_t *ends;
+} half_edges;
+
+static void get_half(const hewn_writing *job, uint64_t index, uint32_t out[2])
+{
+    uint64_t place[3];
+    hewn_writing_triangle(job, index / 3, place);
+    out[0] = job->corners[place[index % 3]];
+    out[1] = job->corners[place[(index + 1) % 3]];
+}
+
+static hewn_result collect(const hewn_writing *job, half_edges *to, hewn_error *error)
+{
+    uint64_t count = 3 * job->triangle_count;
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t half[2];
+        get_half(job, i, half);
+        to->firsts[(half[0] < half[1] ? half[0] : half[1]) + (uint64_t)1]++;
+        HEWN_TRY(look_up(job, i, error));
+    }
+    for (uint64_t v = 0; v < job->vertex_count; v++)
+        to->firsts[v + 1] += to->firsts[v];
+    for (uint64_t i = count; i-- > 0;) { /* fills each list from its end, so that `firsts` moves to its beginning */
+        uint32_t half[2];
+        get_half(job, i, half);
+        bool back = half[0] > half[1];
+        to->ends[--to->firsts[half[back] + (uint64_t)1]] = 2 * (uint64_t)half[!back] + back;
+        HEWN_TRY(look_up(job, i, error));
+    }
+    return HEWN_OK;
+}
+
+/* Whether each edge has one triangle on either side. After collect() the list of v begins at firsts[v + 1]. */
+static bool is_paired(const hewn_writing *job, const half_edges *halves)
+{
+    for (uint64_t v = 0; v < job->vertex_count; v++) {
+        uint64_t begin = halves->firsts[v + 1];
+        uint64_t end = v + 1 < job->vertex_count ? halves->firsts[v + 2] : 3 * job->triangle_count;
+        if ((end - begin) % 2 != 0)
+            return false;
+        qsort(halves->ends + begin, (size_t)(end - begin), sizeof *halves->ends, compare);
+        for (uint64_t i = begin; i < end; i += 2) {
+            uint64_t there = halves->ends[i], back = halves->ends[i + 1];
+            bool pair = there % 2 == 0 && back == there + 1 && there / 2 != v;
+            if (!pair || (i > begin && halves->ends[i - 1] / 2 == there / 2))
+                return false;
+        }
+    }
+    return true;
+}
+
+static hewn_result is_closed_manifold(const hewn_writing *job, bool *out, hewn_error *error)
+{
+    half_edges halves = {hewn_alloc_zero((size_t)job->vertex_count + 1, sizeof(uint64_t)),
+                         hewn_alloc((size_t)job->triangle_count, 3 * sizeof(uint64_t))};
+    hewn_result result = halves.firsts && halves.ends
+                             ? collect(job, &halves, error)
+                             : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
+    *out = result == HEWN_OK && is_paired(job, &halves);
+    hewn_free(halves.firsts);
+    hewn_free(halves.ends);
+    return result;
+}
+
+hewn_result hewn_glb_find_topology(const hewn_writing *job, const hewn_glb_plan *plan, hewn_gltf_topology *out,
+                                   hewn_error *error)
+{
+    bool needed = plan->copy_count > 0, closed;
+    *out = HEWN_GLTF_NO_TOPOLOGY;
+    if (!needed)
+        HEWN_TRY(has_equal_positions(job, plan, &needed, error));
+    if (!needed)
+        return HEWN_OK;
+    HEWN_TRY(is_closed_manifold(job, &closed, error));
+    *out = closed ? HEWN_GLTF_MANIFOLD : HEWN_GLTF_OWN_TOPOLOGY;
+    return HEWN_OK;
+}

@@ -1,0 +1,24 @@
+/* Components of faces joined at shared vertices, and how those that are listed are told apart. */
+#ifndef HEWN_SRC_MESH_CHECK_COMPONENTS_H
+#define HEWN_SRC_MESH_CHECK_COMPONENTS_H
+
+#include "mesh/star.h"
+
+/* Slots 0 to listed - 1 are components, those of most faces first (of as many, that with the lowest vertex); slot
+ * `listed` is all the rest, and the vertices of no face. */
+typedef struct hewn_components {
+    uint64_t count;
+    uint32_t listed;
+    uint32_t *slots; /* of each vertex */
+} hewn_components;
+
+/* How many there are; linear. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_components_count(const hewn_face_view *view, const hewn_stars *stars, uint64_t *count,
+                                  hewn_error *error);
+
+/* The same, and the slots of at most most_listed of them. */
+hewn_result hewn_components_find(const hewn_face_view *view, const hewn_stars *stars, uint32_t most_listed,
+                                 hewn_components *out, hewn_error *error);
+void hewn_components_free(hewn_components *components);
+
+#endif

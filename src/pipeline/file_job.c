@@ -1,0 +1,216 @@
+#include "hewn/file_job.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "pipeline/losses.h"
+#include "pipeline/paths.h"
+#include "pipeline/report.h"
+
+/* A job under way. */
+typedef struct file_job {
+    const hewn_file_job_desc *desc;
+    hewn_file_report *report;
+    double began, stage; /* when the job and the stage began */
+    const hewn_unit *to_unit;
+    const hewn_axis *to_up;
+    hewn_model model;
+} file_job;
+
+static const hewn_axis plus_y = HEWN_AXIS_PLUS_Y, plus_z = HEWN_AXIS_PLUS_Z;
+
+static void begin_stage(file_job *job)
+{
+    job->stage = hewn_clock_now() - job->began;
+}
+
+static void end_stage(file_job *job, const char *name)
+{
+    hewn_file_report *report = job->report;
+    if (report->stage_count == sizeof report->stages / sizeof *report->stages)
+        return;
+    hewn_report_stage *stage = &report->stages[report->stage_count++];
+    snprintf(stage->name, sizeof stage->name, "%s", name);
+    stage->begin = job->stage;
+    stage->end = hewn_clock_now() - job->began;
+}
+
+/* --- before any work --------------------------------------------------------------------------------------------- */
+
+/* GLB is in metres with +Y up, 3MF has +Z up and a unit from a list that kilometres are not in. */
+static hewn_result choose_frame(file_job *job, hewn_error *error)
+{
+    const hewn_file_job_desc *desc = job->desc;
+    hewn_mesh_format to = job->report->to;
+    const hewn_unit *metre = hewn_unit_find("m");
+    job->to_unit = desc->to_unit;
+    job->to_up = desc->to_up;
+    if (to == HEWN_MESH_GLB && job->to_unit && job->to_unit != metre)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB is always in metres, not in %s", job->to_unit->name);
+    if (to == HEWN_MESH_GLB && job->to_up && *job->to_up != plus_y)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB always has +Y up, not %s", hewn_axis_name(*job->to_up));
+    if (to == HEWN_MESH_3MF && job->to_up && *job->to_up != plus_z)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF always has +Z up, not %s", hewn_axis_name(*job->to_up));
+    if (to == HEWN_MESH_3MF && job->to_unit && strcmp(job->to_unit->name, "km") == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF cannot be in km");
+    if (to == HEWN_MESH_GLB)
+        job->to_unit = metre;
+    if (to == HEWN_MESH_GLB)
+        job->to_up = &plus_y;
+    if (to == HEWN_MESH_3MF)
+        job->to_up = &plus_z;
+    return HEWN_OK;
+}
+
+static hewn_result check(file_job *job, hewn_error *error)
+{
+    const hewn_file_job_desc *desc = job->desc;
+    if (!desc->input || !desc->output)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a job needs an input and an output");
+    HEWN_TRY(hewn_input_format(desc->input, desc->from, &job->report->from, error));
+    HEWN_TRY(hewn_output_format(desc->output, desc->to, &job->report->to, error));
+    HEWN_TRY(choose_frame(job, error));
+    if (desc->report && strcmp(desc->report, desc->output) == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
+                         strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
+    HEWN_TRY(hewn_output_check(desc->output, error));
+    return desc->report ? hewn_output_check(desc->report, error) : HEWN_OK;
+}
+
+/* --- the stages -------------------------------------------------------------------------------------------------- */
+
+static hewn_result load(file_job *job, hewn_error *error)
+{
+    const hewn_file_job_desc *desc = job->desc;
+    hewn_file_report *report = job->report;
+    hewn_read_desc read = {.format = report->from, .progress = desc->progress};
+    begin_stage(job);
+    hewn_result result = hewn_model_read(desc->input, &read, &job->model, error);
+    if (result != HEWN_OK)
+        return hewn_blame_input(result, desc->input, error);
+    hewn_model *model = &job->model;
+    report->vertices_before = model->vertex_count;
+    report->faces_before = model->face_count;
+    report->file_unit = model->unit;
+    report->file_up = model->up;
+    report->file_up_known = model->up_known;
+    if (desc->unit)
+        model->unit = desc->unit;
+    if (desc->up) {
+        model->up = *desc->up;
+        model->up_known = true;
+    }
+    end_stage(job, "load");
+    return HEWN_OK;
+}
+
+static hewn_result repair(file_job *job, hewn_error *error)
+{
+    hewn_file_report *report = job->report;
+    hewn_repair_desc desc = *job->desc->repair;
+    desc.progress = job->desc->progress;
+    begin_stage(job);
+    hewn_mesh *mesh = NULL;
+    hewn_result result = hewn_mesh_from_model(&job->model, &desc, &mesh, &report->repair, error);
+    if (result != HEWN_OK)
+        return hewn_blame_input(result, job->desc->input, error);
+    hewn_model repaired;
+    result = hewn_model_from_mesh(mesh, &repaired, error);
+    hewn_mesh_destroy(&mesh);
+    HEWN_TRY(result);
+    repaired.unit = job->model.unit;
+    repaired.up = job->model.up;
+    repaired.up_known = job->model.up_known;
+    hewn_model_destroy(&job->model);
+    job->model = repaired;
+    report->repaired = true;
+    end_stage(job, "repair");
+    return HEWN_OK;
+}
+
+/* A 3MF file without a unit is in millimetres, and has none for kilometres. */
+static const hewn_unit *unit_for(const file_job *job)
+{
+    if (job->to_unit || job->report->to != HEWN_MESH_3MF)
+        return job->to_unit;
+    const hewn_unit *unit = job->model.unit;
+    if (!unit)
+        return hewn_unit_find("mm");
+    return strcmp(unit->name, "km") == 0 ? hewn_unit_find("m") : NULL;
+}
+
+static hewn_result convert(file_job *job, hewn_error *error)
+{
+    hewn_file_report *report = job->report;
+    HEWN_TRY(hewn_model_convert(&job->model, unit_for(job), job->to_up, &report->conversion, error));
+    report->up_known = job->model.up_known;
+    report->vertices = job->model.vertex_count;
+    report->faces = job->model.face_count;
+    return HEWN_OK;
+}
+
+static hewn_result examine(file_job *job, hewn_error *error)
+{
+    begin_stage(job);
+    hewn_check_desc desc = {.skip_self_intersections = job->desc->skip_self_intersections,
+                            .progress = job->desc->progress};
+    hewn_polygons polygons = hewn_model_polygons(&job->model);
+    HEWN_TRY(hewn_check_polygons(&polygons, &desc, &job->report->check, error));
+    end_stage(job, "check");
+    return HEWN_OK;
+}
+
+static hewn_result write(file_job *job, hewn_error *error)
+{
+    const hewn_file_job_desc *desc = job->desc;
+    hewn_file_report *report = job->report;
+    char name[256];
+    begin_stage(job);
+    HEWN_TRY(hewn_losses_find(&job->model, report->to, &report->losses, error));
+    if (report->to == HEWN_MESH_STL)
+        report->losses.rejoined = report->repair.vertex_copies;
+    hewn_path_stem(strcmp(desc->output, "-") == 0 ? desc->input : desc->output, name, sizeof name);
+    hewn_write_desc write_desc = {.format = report->to, .name = name, .progress = desc->progress};
+    HEWN_TRY(hewn_model_write(&job->model, desc->output, &write_desc, error));
+    end_stage(job, "write");
+    return HEWN_OK;
+}
+
+/* --- the whole --------------------------------------------------------------------------------------------------- */
+
+static hewn_result run(file_job *job, hewn_error *error)
+{
+    const hewn_file_job_desc *desc = job->desc;
+    hewn_file_report *report = job->report;
+    HEWN_TRY(check(job, error));
+    report->input = hewn_strdup(desc->input);
+    report->output = hewn_strdup(desc->output);
+    if (!report->input || !report->output)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the report");
+    HEWN_TRY(load(job, error));
+    if (desc->repair)
+        HEWN_TRY(repair(job, error));
+    HEWN_TRY(convert(job, error));
+    if (desc->check)
+        HEWN_TRY(examine(job, error));
+    return write(job, error);
+}
+
+hewn_result hewn_file_convert(const hewn_file_job_desc *desc, hewn_file_report *out, hewn_error *error)
+{
+    *out = (hewn_file_report){0};
+    file_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
+    hewn_result result = run(&job, error);
+    hewn_model_destroy(&job.model);
+    out->seconds = hewn_clock_now() - job.began;
+    out->peak_host_bytes = hewn_peak_host_bytes();
+    if (result == HEWN_OK && desc->report)
+        result = hewn_file_report_write(out, desc->report, error);
+    if (result != HEWN_OK)
+        hewn_file_report_destroy(out);
+    return result;
+}

@@ -1,0 +1,17 @@
+/* What the reports of several jobs have in common. */
+#ifndef HEWN_SRC_PIPELINE_JSON_PARTS_H
+#define HEWN_SRC_PIPELINE_JSON_PARTS_H
+
+#include "base/json.h"
+#include "hewn/file_job.h"
+
+void hewn_json_vector(hewn_json *json, const char *key, const double vector[3]);
+void hewn_json_box(hewn_json *json, const char *key, const hewn_box *box);
+
+/* "seconds" and "stages". */
+void hewn_json_stages(hewn_json *json, const hewn_report_stage *stages, uint32_t count, double seconds);
+
+/* Writes what was made to a file, "-" is standard output. HEWN_IO, HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_json_finish(const hewn_text *text, const char *path, hewn_error *error);
+
+#endif
