@@ -20,6 +20,8 @@ hewn_result hewn_check_positions(const double *doubles, const float *floats, uin
 {
     const hewn_face_view view = {.doubles = doubles, .floats = floats};
     uint64_t bad = vertex_count;
+    if (!doubles && !floats) /* callers have refused vertices without positions */
+        return HEWN_OK;
 #pragma omp parallel for schedule(static) reduction(min : bad) if (vertex_count >= HEWN_CHECK_ALONE)
     for (uint64_t v = 0; v < vertex_count; v++) {
         double p[3];

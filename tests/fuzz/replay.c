@@ -23,11 +23,11 @@ static uint64_t next_random(uint64_t *state) /* xorshift64 of Marsaglia 2003 */
     return *state;
 }
 
-static size_t load_seeds(const char *folder, seed seeds[MAX_SEEDS])
+/* Adds a folder's files to the `count` seeds there are, and returns how many there are then. */
+static size_t load_seeds(const char *folder, seed seeds[MAX_SEEDS], size_t count)
 {
     struct dirent **entries;
     int listed = scandir(folder, &entries, NULL, alphasort); /* sorted: the same order everywhere */
-    size_t count = 0;
     for (int i = 0; i < listed; i++) {
         char path[4096];
         snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
@@ -89,7 +89,9 @@ static void run(const uint8_t *bytes, size_t size)
 int main(int count, char **arguments)
 {
     static seed seeds[MAX_SEEDS];
-    size_t seed_count = count > 1 ? load_seeds(arguments[1], seeds) : 0;
+    size_t seed_count = 0;
+    for (int i = 1; i < count; i++)
+        seed_count = load_seeds(arguments[i], seeds, seed_count);
     uint8_t *bytes = malloc(MAX_BYTES);
     uint64_t random = 88172645463325252u;
     uint64_t mutations = getenv("HEWN_LONG") != NULL ? MUTATIONS_LONG : MUTATIONS;
