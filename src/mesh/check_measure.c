@@ -89,11 +89,9 @@ typedef struct sums {
     uint64_t flat;
 } sums;
 
-/* Whether the corners of a triangle lie on one line. Only a normal that is tiny beside its factors leaves doubt. */
-static bool is_flat(const hewn_triangle_view *mesh, const uint32_t *corner, double square, double factors)
+/* Whether the corners of a triangle lie on one line, exactly: asked where its normal is tiny beside its sides. */
+static bool is_flat(const hewn_triangle_view *mesh, const uint32_t *corner)
 {
-    if (square > 1e-24 * factors && square > 1e-200)
-        return false;
     double a[3], b[3], c[3];
     hewn_triangle_point(mesh, corner[0], a);
     hewn_triangle_point(mesh, corner[1], b);
@@ -101,39 +99,55 @@ static bool is_flat(const hewn_triangle_view *mesh, const uint32_t *corner, doub
     return hewn_points_collinear(a, b, c);
 }
 
-/* One triangle: the tetrahedron that it spans with the origin, and its area. */
-static sums measure_triangle(const hewn_triangle_view *mesh, const uint32_t *corner, const ruler *by)
+static inline void measure_point(const hewn_triangle_view *mesh, uint32_t vertex, const ruler *by, bool floats,
+                                 double out[3])
 {
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = floats ? (double)mesh->floats[3 * (uint64_t)vertex + (uint64_t)axis]
+                           : mesh->doubles[3 * (uint64_t)vertex + (uint64_t)axis] * by->scale;
+}
+
+/* One triangle: the tetrahedron that it spans with the origin, and its area. `floats` is known where this is inlined,
+ * and scales nothing. */
+static inline void measure_triangle(const hewn_triangle_view *mesh, uint64_t t, const ruler *by, bool floats, sums *sum)
+{
+    const uint32_t *corner = mesh->corners + 3 * t;
     double a[3], b[3], c[3], u[3], v[3], w[3];
-    hewn_triangle_point(mesh, corner[0], a);
-    hewn_triangle_point(mesh, corner[1], b);
-    hewn_triangle_point(mesh, corner[2], c);
+    measure_point(mesh, corner[0], by, floats, a);
+    measure_point(mesh, corner[1], by, floats, b);
+    measure_point(mesh, corner[2], by, floats, c);
     for (int axis = 0; axis < 3; axis++) {
-        u[axis] = b[axis] * by->scale - a[axis] * by->scale;
-        v[axis] = c[axis] * by->scale - a[axis] * by->scale;
-        w[axis] = a[axis] * by->scale - by->origin[axis];
+        u[axis] = b[axis] - a[axis];
+        v[axis] = c[axis] - a[axis];
+        w[axis] = a[axis] - by->origin[axis];
     }
     double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
     double factors = (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    return (sums){w[0] * n[0] + w[1] * n[1] + w[2] * n[2], sqrt(square), is_flat(mesh, corner, square, factors)};
+    sum->volume += w[0] * n[0] + w[1] * n[1] + w[2] * n[2];
+    sum->area += sqrt(square);
+    if (!(square > 1e-24 * factors && square > 1e-200)) /* in doubt */
+        sum->flat += is_flat(mesh, corner);
+}
+
+static sums measure_block(const hewn_triangle_view *mesh, const ruler *by, uint64_t begin, uint64_t end)
+{
+    sums sum = {0};
+    if (mesh->doubles)
+        for (uint64_t t = begin; t < end; t++)
+            measure_triangle(mesh, t, by, false, &sum);
+    else
+        for (uint64_t t = begin; t < end; t++)
+            measure_triangle(mesh, t, by, true, &sum);
+    return sum;
 }
 
 /* Blocks first to last - 1 into `parts`. */
 static void measure_blocks(const hewn_triangle_view *mesh, const ruler *by, uint64_t first, uint64_t last, sums *parts)
 {
 #pragma omp parallel for schedule(dynamic, 1) if (last - first > 1)
-    for (uint64_t block = first; block < last; block++) {
-        sums sum = {0};
-        uint64_t end = least((block + 1) * BLOCK, mesh->triangle_count);
-        for (uint64_t t = block * BLOCK; t < end; t++) {
-            sums one = measure_triangle(mesh, mesh->corners + 3 * t, by);
-            sum.volume += one.volume;
-            sum.area += one.area;
-            sum.flat += one.flat;
-        }
-        parts[block] = sum;
-    }
+    for (uint64_t block = first; block < last; block++)
+        parts[block] = measure_block(mesh, by, block * BLOCK, least((block + 1) * BLOCK, mesh->triangle_count));
 }
 
 hewn_result hewn_measure_triangles(const hewn_triangle_view *mesh, const char *stage, const hewn_progress *progress,
@@ -191,11 +205,10 @@ hewn_result hewn_measure_components(const hewn_face_view *view, const hewn_trian
     for (uint32_t slot = 0; slot < components->listed; slot++)
         rulers[slot] = choose_ruler(mesh, &out[slot].bounds);
     for (uint64_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *corner = mesh->corners + 3 * t;
-        uint32_t slot = components->slots[corner[0]];
+        uint32_t slot = components->slots[mesh->corners[3 * t]];
         if (slot == components->listed)
             continue;
-        sums one = measure_triangle(mesh, corner, &rulers[slot]);
+        sums one = measure_block(mesh, &rulers[slot], t, t + 1);
         out[slot].volume += one.volume;
         out[slot].area += one.area;
     }

@@ -12,30 +12,58 @@ enum { RING_LIMIT = 16, ROW_LIMIT = 256, PART_LIMIT = 8 };
 
 /* --- sorting corners into rows ------------------------------------------------------------------------------------ */
 
-/* Each part of the vertices belongs to one thread, which reads all faces: no atomics, and the order inside a row does
- * not depend on the number of threads. */
-static void count_part(const hewn_face_view *view, uint32_t *count, uint32_t begin, uint32_t length)
+/* The vertices begin to begin + length - 1. */
+typedef struct part {
+    uint32_t begin, length;
+} part;
+
+static bool is_in(const part *part, uint32_t vertex)
 {
-    for (uint64_t f = 0; f < view->face_count; f++) {
-        if (hewn_face_collapsed(view, f))
-            continue;
-        uint64_t end = hewn_face_begin(view, f + 1);
-        for (uint64_t c = hewn_face_begin(view, f); c < end; c++)
-            if (view->corners[c] - begin < length)
-                count[view->corners[c]]++;
-    }
+    return vertex - part->begin < part->length;
 }
 
-static void fill_part(const hewn_face_view *view, hewn_stars *stars, uint32_t begin, uint32_t length)
+/* Each part of the vertices belongs to one thread, which reads all faces: no atomics, and the order inside a row does
+ * not depend on the number of threads. Triangles go a way of their own, which is a third faster. */
+static void count_part(const hewn_face_view *view, uint32_t *count, part mine)
 {
-    for (uint64_t f = 0; f < view->face_count; f++) {
-        if (hewn_face_collapsed(view, f))
-            continue;
-        uint64_t end = hewn_face_begin(view, f + 1);
-        for (uint64_t c = hewn_face_begin(view, f); c < end; c++)
-            if (view->corners[c] - begin < length)
-                stars->corners[stars->first[view->corners[c]]++] = (uint32_t)c;
+    if (!view->first) {
+        for (uint64_t t = 0; t < view->face_count; t++) {
+            const uint32_t *corner = view->corners + 3 * t;
+            if (hewn_triangle_collapsed(corner))
+                continue;
+            for (int k = 0; k < 3; k++)
+                if (is_in(&mine, corner[k]))
+                    count[corner[k]]++;
+        }
+        return;
     }
+    for (uint64_t c = 0; c < view->corner_count; c++)
+        if (is_in(&mine, view->corners[c]) && !view->collapsed[view->faces[c]])
+            count[view->corners[c]]++;
+}
+
+static void fill_part(const hewn_face_view *view, hewn_stars *stars, part mine)
+{
+    if (!view->first) {
+        for (uint64_t t = 0; t < view->face_count; t++) {
+            const uint32_t *corner = view->corners + 3 * t;
+            if (hewn_triangle_collapsed(corner))
+                continue;
+            for (int k = 0; k < 3; k++)
+                if (is_in(&mine, corner[k]))
+                    stars->corners[stars->first[corner[k]]++] = (uint32_t)(3 * t) + (uint32_t)k;
+        }
+        return;
+    }
+    for (uint64_t c = 0; c < view->corner_count; c++)
+        if (is_in(&mine, view->corners[c]) && !view->collapsed[view->faces[c]])
+            stars->corners[stars->first[view->corners[c]]++] = (uint32_t)c;
+}
+
+static part nth_part(uint64_t vertices, int p, int parts)
+{
+    uint64_t begin = vertices * (uint64_t)p / (uint64_t)parts, end = vertices * (uint64_t)(p + 1) / (uint64_t)parts;
+    return (part){(uint32_t)begin, (uint32_t)(end - begin)};
 }
 
 /* Counts to the start of each row. */
@@ -62,11 +90,8 @@ hewn_result hewn_stars_build(const hewn_face_view *view, hewn_stars *out, hewn_e
     int threads = view->face_count < HEWN_CHECK_ALONE ? 1 : omp_get_max_threads();
     int parts = threads < PART_LIMIT ? threads : PART_LIMIT;
 #pragma omp parallel for schedule(static, 1) num_threads(parts)
-    for (int p = 0; p < parts; p++) {
-        uint32_t begin = (uint32_t)(vertices * (uint64_t)p / (uint64_t)parts);
-        uint32_t end = (uint32_t)(vertices * (uint64_t)(p + 1) / (uint64_t)parts);
-        count_part(view, out->first, begin, end - begin);
-    }
+    for (int p = 0; p < parts; p++)
+        count_part(view, out->first, nth_part(vertices, p, parts));
     uint32_t total = accumulate(out->first, vertices, &out->longest);
     out->corners = hewn_alloc(total, sizeof *out->corners);
     if (!out->corners) {
@@ -75,11 +100,8 @@ hewn_result hewn_stars_build(const hewn_face_view *view, hewn_stars *out, hewn_e
                          (unsigned long long)view->face_count);
     }
 #pragma omp parallel for schedule(static, 1) num_threads(parts)
-    for (int p = 0; p < parts; p++) {
-        uint32_t begin = (uint32_t)(vertices * (uint64_t)p / (uint64_t)parts);
-        uint32_t end = (uint32_t)(vertices * (uint64_t)(p + 1) / (uint64_t)parts);
-        fill_part(view, out, begin, end - begin);
-    }
+    for (int p = 0; p < parts; p++)
+        fill_part(view, out, nth_part(vertices, p, parts));
     /* Filling moved each start to its row's end, which is the next row's start. */
     memmove(out->first + 1, out->first, vertices * sizeof *out->first);
     out->first[0] = 0;

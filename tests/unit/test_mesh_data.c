@@ -127,21 +127,21 @@ static void assert_same_topology(const hewn_mesh *was, const hewn_model *model, 
     hewn_mesh_destroy(&is);
 }
 
-static void round_trip(const hewn_model *model, const hewn_mesh *mesh, uint32_t isolated, const format *format)
+static void round_trip(const hewn_model *model, const hewn_mesh *mesh, uint32_t isolated, const format *by)
 {
     char path[64];
     hewn_model again;
     hewn_triangles triangles;
-    snprintf(path, sizeof path, "round_trip_%d.%s", (int)getpid(), format->extension);
+    snprintf(path, sizeof path, "round_trip_%d.%s", (int)getpid(), by->extension);
     assert_works(hewn_model_write(model, path, NULL, error));
     assert_works(hewn_model_read(path, NULL, &again, error));
     assert_works(hewn_triangles_from_model(model, &triangles, error));
     unlink(path);
-    if (format->polygons)
-        assert_same_model(model, &again, format->doubles);
+    if (by->polygons)
+        assert_same_model(model, &again, by->doubles);
     else
         assert_same_triangles(&triangles, &again);
-    if (format->shared) {
+    if (by->shared) {
         assert_int_equal(again.vertex_count, model->vertex_count);
         assert_same_topology(mesh, &again, 0);
     } else if (positions_differ(&triangles)) {
