@@ -22,7 +22,7 @@ static hewn_box empty_box(void)
     return (hewn_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 }
 
-static void grow_box(hewn_box *box, const double lo[3], const double hi[3])
+static inline void grow_box(hewn_box *box, const double lo[3], const double hi[3])
 {
     for (int axis = 0; axis < 3; axis++) {
         box->lo[axis] = lo[axis] < box->lo[axis] ? lo[axis] : box->lo[axis];
@@ -66,6 +66,7 @@ typedef struct ruler {
     double origin[3]; /* scaled */
     double scale;
     int exponent; /* scale is 2^exponent */
+    double doubt; /* a squared normal above this is no rounding error, whatever the triangle */
 } ruler;
 
 static ruler choose_ruler(const hewn_triangle_view *mesh, const hewn_box *bounds)
@@ -78,8 +79,13 @@ static ruler choose_ruler(const hewn_triangle_view *mesh, const hewn_box *bounds
     bool usual = !mesh->doubles || most == 0 || (out.exponent > -100 && out.exponent < 100);
     out.exponent = usual ? 0 : out.exponent < -1020 ? 1020 : -out.exponent;
     out.scale = ldexp(1, out.exponent);
-    for (int axis = 0; axis < 3; axis++)
-        out.origin[axis] = 0.5 * (bounds->lo[axis] * out.scale + bounds->hi[axis] * out.scale);
+    double square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double lo = bounds->lo[axis] * out.scale, hi = bounds->hi[axis] * out.scale;
+        out.origin[axis] = 0.5 * (lo + hi);
+        square += (hi - lo) * (hi - lo);
+    }
+    out.doubt = fmax(1e-24 * square * square, 1e-200);
     return out;
 }
 
@@ -89,9 +95,16 @@ typedef struct sums {
     uint64_t flat;
 } sums;
 
-/* Whether the corners of a triangle lie on one line, exactly: asked where its normal is tiny beside its sides. */
-static bool is_flat(const hewn_triangle_view *mesh, const uint32_t *corner)
+static double length_squared(const double *a)
 {
+    return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+}
+
+/* Whether the corners of a triangle lie on one line. Only a normal that is tiny beside its sides leaves doubt. */
+static bool is_flat(const hewn_triangle_view *mesh, const uint32_t *corner, double square, double factors)
+{
+    if (square > 1e-24 * factors && square > 1e-200)
+        return false;
     double a[3], b[3], c[3];
     hewn_triangle_point(mesh, corner[0], a);
     hewn_triangle_point(mesh, corner[1], b);
@@ -123,11 +136,10 @@ static inline void measure_triangle(const hewn_triangle_view *mesh, uint64_t t, 
     }
     double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    double factors = (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     sum->volume += w[0] * n[0] + w[1] * n[1] + w[2] * n[2];
     sum->area += sqrt(square);
-    if (!(square > 1e-24 * factors && square > 1e-200)) /* in doubt */
-        sum->flat += is_flat(mesh, corner);
+    if (!(square > by->doubt))
+        sum->flat += is_flat(mesh, corner, square, length_squared(u) * length_squared(v));
 }
 
 static sums measure_block(const hewn_triangle_view *mesh, const ruler *by, uint64_t begin, uint64_t end)

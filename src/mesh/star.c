@@ -13,18 +13,18 @@ enum { RING_LIMIT = 16, ROW_LIMIT = 256, PART_LIMIT = 8 };
 /* --- sorting corners into rows ------------------------------------------------------------------------------------ */
 
 /* The vertices begin to begin + length - 1. */
-typedef struct part {
+typedef struct vertex_range {
     uint32_t begin, length;
-} part;
+} vertex_range;
 
-static bool is_in(const part *part, uint32_t vertex)
+static bool is_in(const vertex_range *range, uint32_t vertex)
 {
-    return vertex - part->begin < part->length;
+    return vertex - range->begin < range->length;
 }
 
 /* Each part of the vertices belongs to one thread, which reads all faces: no atomics, and the order inside a row does
  * not depend on the number of threads. Triangles go a way of their own, which is a third faster. */
-static void count_part(const hewn_face_view *view, uint32_t *count, part mine)
+static void count_part(const hewn_face_view *view, uint32_t *count, vertex_range mine)
 {
     if (!view->first) {
         for (uint64_t t = 0; t < view->face_count; t++) {
@@ -42,7 +42,7 @@ static void count_part(const hewn_face_view *view, uint32_t *count, part mine)
             count[view->corners[c]]++;
 }
 
-static void fill_part(const hewn_face_view *view, hewn_stars *stars, part mine)
+static void fill_part(const hewn_face_view *view, hewn_stars *stars, vertex_range mine)
 {
     if (!view->first) {
         for (uint64_t t = 0; t < view->face_count; t++) {
@@ -60,10 +60,10 @@ static void fill_part(const hewn_face_view *view, hewn_stars *stars, part mine)
             stars->corners[stars->first[view->corners[c]]++] = (uint32_t)c;
 }
 
-static part nth_part(uint64_t vertices, int p, int parts)
+static vertex_range nth_part(uint64_t vertices, int p, int parts)
 {
     uint64_t begin = vertices * (uint64_t)p / (uint64_t)parts, end = vertices * (uint64_t)(p + 1) / (uint64_t)parts;
-    return (part){(uint32_t)begin, (uint32_t)(end - begin)};
+    return (vertex_range){(uint32_t)begin, (uint32_t)(end - begin)};
 }
 
 /* Counts to the start of each row. */
@@ -119,7 +119,13 @@ void hewn_stars_free(hewn_stars *stars)
 
 static void gather(const hewn_face_view *view, const uint32_t *row, uint32_t length, hewn_link_arc *arcs)
 {
-    for (uint32_t i = 0; i < length; i++)
+    static const uint8_t after[3] = {1, 2, 0}, before[3] = {2, 0, 1};
+    for (uint32_t i = 0; i < length && !view->first; i++) {
+        uint32_t k = row[i] % 3;
+        const uint32_t *corner = view->corners + (row[i] - k);
+        arcs[i] = (hewn_link_arc){corner[after[k]], corner[before[k]]};
+    }
+    for (uint32_t i = 0; i < length && view->first; i++)
         arcs[i] = (hewn_link_arc){view->corners[hewn_corner_after(view, row[i])],
                                   view->corners[hewn_corner_before(view, row[i])]};
 }
