@@ -21,15 +21,6 @@ static bool write_and_read(const hewn_model *model, hewn_model *again)
     return true;
 }
 
-/* Files take a hundred times as long as reading does: one in eight inputs goes through them, whichever way it runs. */
-static bool is_chosen(const uint8_t *data, size_t size)
-{
-    uint32_t sum = 0;
-    for (size_t i = 0; i < size; i++)
-        sum = 31 * sum + data[i];
-    return sum % 8 == 0;
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const hewn_source source = {.bytes = (const char *)data, .length = size, .name = "fuzz"};
