@@ -51,7 +51,7 @@ uint32_t hewn_mc33_ambiguous(uint32_t pattern);
  * HEWN_MC33_JOINS for each combination of decisions at the ambiguous faces (lowest face, lowest bit).
  *
  * A record's first word is its number of triangles, and of vertices in the cell in bits 8 and up. Then follow, two to a
- * word, the edges whose mean each such vertex is; then, two to a word, the triangles, four bits a corner. */
+ * word, those vertices as in hewn_patch; then, two to a word, the triangles, four bits a corner. */
 typedef struct hewn_mc33_table {
     uint32_t *words;
     uint32_t count;

@@ -17,7 +17,9 @@ typedef struct hewn_loop {
     uint32_t edges[12];
 } hewn_loop;
 
-/* Triangles of a cell, and for each vertex in the cell the edges whose mean it is, as bits. */
+/* Triangles of a cell, and its vertices in the cell. Bits 0 to 11 of such a vertex are the edges of which it is the
+ * mean crossing; where bits 12 to 14 are not 0 they are a face + 1, and the vertex lies halfway from there to the mean
+ * of those crossings that are in that face. */
 typedef struct hewn_patch {
     uint32_t triangle_count;
     uint8_t corners[HEWN_PATCH_MOST_TRIANGLES][3];
@@ -30,8 +32,8 @@ typedef struct hewn_patch {
  * is none. */
 void hewn_patch_add_disc(hewn_patch *patch, const hewn_loop *loop);
 
-/* Adds a band of triangles from loop to loop, with as few vertices in the cell as can be and then the shortest cross
- * edges. False where there is none. */
+/* Adds a band of triangles from loop to loop, with a vertex in the cell beside each face that both loops pass. False
+ * where there is no such band. */
 bool hewn_patch_add_annulus(hewn_patch *patch, const hewn_loop *one, const hewn_loop *other);
 
 #endif

@@ -188,10 +188,11 @@ static uint32_t record_of(const builder *build, uint32_t pattern, const double v
     return build->table->words[(head & 0xFFFF) + HEWN_MC33_JOINS * number + oracle_mc33_join(values)];
 }
 
-static void place_centre(builder *build, uint32_t index, uint32_t edges)
+/* The mean of the crossings on these edges; false where there is none of them. */
+static bool mean_crossing(const builder *build, uint32_t index, uint32_t edges, double mean[3])
 {
-    double sum[3] = {0};
     uint32_t count = 0;
+    memset(mean, 0, 3 * sizeof *mean);
     for (uint32_t edge = 0; edge < 12; edge++) {
         if (!(edges >> edge & 1))
             continue;
@@ -200,12 +201,26 @@ static void place_centre(builder *build, uint32_t index, uint32_t edges)
             at += (start >> axis & 1) * step_of(build, axis);
         const float *position = build->out.positions + (size_t)3 * build->edge_vertex[3 * at + edge / 4];
         for (int axis = 0; axis < 3; axis++)
-            sum[axis] += (double)position[axis];
+            mean[axis] += (double)position[axis];
         count++;
     }
+    for (int axis = 0; axis < 3; axis++)
+        mean[axis] /= count;
+    return count > 0;
+}
+
+static void place_centre(builder *build, uint32_t index, uint32_t centre)
+{
+    double mean[3], near[3];
+    uint32_t edges = centre & 0xFFF, face = (centre >> 12) - 1, in_face = 0;
+    for (uint32_t edge = 0; edge < 12; edge++)
+        in_face |= centre >> 12 && hewn_cube_edge_in_face(edge, face) ? 1u << edge : 0;
+    mean_crossing(build, index, edges, mean);
+    if (!mean_crossing(build, index, edges & in_face, near))
+        memcpy(near, mean, sizeof near);
     float *position = build->out.positions + 3 * build->out.vertex_count++;
     for (int axis = 0; axis < 3; axis++)
-        position[axis] = (float)(sum[axis] / count);
+        position[axis] = (float)((mean[axis] + near[axis]) / 2);
 }
 
 static void cut_cell(builder *build, uint32_t index)
@@ -222,7 +237,7 @@ static void cut_cell(builder *build, uint32_t index)
     const uint32_t *record = build->table->words + record_of(build, pattern, values);
     uint32_t triangles = record[0] & 255, centres = record[0] >> 8, first = (uint32_t)build->out.vertex_count;
     for (uint32_t i = 0; i < centres; i++)
-        place_centre(build, index, record[1 + i / 2] >> 16 * (i % 2) & 0xFFF);
+        place_centre(build, index, record[1 + i / 2] >> 16 * (i % 2) & 0xFFFF);
     for (uint32_t i = 0; i < triangles; i++) {
         uint32_t word = record[1 + (centres + 1) / 2 + i / 2] >> 16 * (i % 2);
         uint32_t *indices = build->out.indices + 3 * build->out.triangle_count++;
