@@ -1,5 +1,6 @@
 /* GLSL only: products and sums with twice a float's digits, as pairs (high, low). Exact for products of two floats and
- * wherever a result fits, as it does for small integers; to 2^-44 of the operands else. Knuth's sum, Dekker's product. */
+ * wherever a result fits, as it does for small integers; to 2^-44 of the operands else. Knuth's sum, Dekker's product.
+ */
 #ifndef HEWN_SHADERS_ISO_EXACT_H
 #define HEWN_SHADERS_ISO_EXACT_H
 

@@ -4,7 +4,8 @@
 
 #include "iso/brick.h"
 
-/* Steps through the brick's words and their bits in one loop, so that lanes with many bits in one word do not hold the others up. */
+/* Steps through the brick's words and their bits in one loop, so that lanes with many bits in one word do not hold the
+ * others up. */
 void spread_vertices(Uints edges, Uints vertices, uint slot, uint vertex)
 {
     uint word = 0u, mask = 0u;

@@ -1,4 +1,5 @@
-/* GLSL only: a walk through the cells of a brick that hold surface, and their records in the table of configurations. */
+/* GLSL only: a walk through the cells of a brick that hold surface, and their records in the table of configurations.
+ */
 #ifndef HEWN_SHADERS_ISO_WALK_H
 #define HEWN_SHADERS_ISO_WALK_H
 

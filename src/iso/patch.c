@@ -220,6 +220,7 @@ static void walk_to(walk_search *search, crossing to, uint32_t over)
 {
     const annulus *band = search->band;
     walk *now = &search->now;
+    assert(band->one->length > 0 && band->other->length > 0);
     crossing from = now->at[now->count - 1];
     uint32_t i = to.i % band->one->length, j = corner_of_other(search, now, to.j), passed = now->gaps_passed;
     bool closes = to.i == band->one->length && to.j == band->other->length;
