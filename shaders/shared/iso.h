@@ -176,11 +176,9 @@ struct hewn_mc33_spread_push {
     HEWN_UINTS vertex_bases;
     HEWN_UINTS triangle_bases;
     HEWN_UINTS centre_bases;
-    HEWN_UINTS
-        vertices; /* out: as in hewn_spread_push; of a vertex in a cell slot and sample + 512 * its description */
-    HEWN_UINTS
-        indices;     /* out: slot, sample + 512 * corners (four bits each), number of the cell's first vertex in it */
-    HEWN_UINT first; /* number of the first vertex in a cell: they follow those on edges */
+    HEWN_UINTS vertices; /* out: as in hewn_spread_push; in a cell slot and sample + 512 * description (hewn_patch) */
+    HEWN_UINTS indices;  /* out: slot, sample + 512 * corners of four bits, the cell's first vertex */
+    HEWN_UINT first;     /* number of the first vertex in a cell: they follow those on edges */
     HEWN_UINT pad;
 };
 
