@@ -12,7 +12,10 @@ extern "C" {
 
 typedef struct hewn_extractor hewn_extractor;
 
-typedef enum hewn_method { HEWN_METHOD_MARCHING_CUBES } hewn_method;
+typedef enum hewn_method {
+    HEWN_METHOD_MARCHING_CUBES, /* after Lorensen and Cline 1987, with one rule for ambiguous faces */
+    HEWN_METHOD_MC33            /* the same with the topology of the samples' trilinear interpolant (Chernyaev 1995) */
+} hewn_method;
 
 /* Where and how finely. Zero everywhere but `bounds` is a sensible default. */
 typedef struct hewn_extract_desc {
@@ -60,8 +63,8 @@ HEWN_API void hewn_extractor_destroy(hewn_extractor **extractor);
 /* Meshes the field: f < 0 is inside, everything else (0 and NaN too) outside. The triangles may live in memory of the
  * device: destroy them before the device. HEWN_INVALID_ARGUMENT for bounds or a resolution that make no sense, or so
  * far from the origin that float positions cannot tell vertices apart; HEWN_BAD_INPUT where there is no surface, saying
- * why; HEWN_LIMIT; HEWN_CANCELLED; device errors. Marching cubes after Lorensen and Cline 1987, with one rule for
- * ambiguous faces, vertices solved on the field itself. */
+ * why; HEWN_LIMIT; HEWN_CANCELLED; device errors. Vertices on grid edges are solved on the field itself;
+ * docs/extraction.md says what each method guarantees. */
 HEWN_API hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_triangles *out,
                                   hewn_extract_stats *stats, hewn_error *error);
 

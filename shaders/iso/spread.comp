@@ -5,7 +5,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "iso/brick.h"
+#include "iso/spread.h"
 #include "iso/table.h"
 #include "shared/invocation.h"
 
@@ -14,27 +14,6 @@ layout(push_constant, scalar) uniform Push
 {
     hewn_spread_push push;
 };
-
-/* Steps through the brick's words and their bits in one loop, so that lanes with many bits in one word do not hold the others up. */
-void spread_vertices(uint slot)
-{
-    uint word = 0u, mask = 0u, vertex = push.vertex_bases.at[slot];
-    uint pair = 2u * slot * HEWN_BRICK_EDGE_WORDS;
-    while (word < HEWN_BRICK_EDGE_WORDS || mask != 0u) {
-        if (mask == 0u) {
-            mask = push.edges.at[pair];
-            push.edges.at[pair + 1u] = vertex;
-            pair += 2u;
-            word++;
-        }
-        if (mask != 0u) {
-            push.vertices.at[3u * vertex] = slot;
-            push.vertices.at[3u * vertex + 1u] = 32u * (word - 1u) + uint(findLSB(mask));
-            mask &= mask - 1u;
-            vertex++;
-        }
-    }
-}
 
 /* One record a triangle of the cells at `cut`; returns the next triangle's number. */
 uint spread_cells(uint slot, uint word, uvec4 lower, uvec4 upper, uint cut, uint triangle)
@@ -79,6 +58,6 @@ void main()
     uint slot = invocation();
     if (slot >= push.count)
         return;
-    spread_vertices(slot);
+    spread_vertices(push.edges, push.vertices, slot, push.vertex_bases.at[slot]);
     spread_triangles(slot);
 }

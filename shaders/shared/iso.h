@@ -126,4 +126,73 @@ struct hewn_triangle_push {
     HEWN_UINTS indices; /* in: records; out: indices */
 };
 
+/* --- the trilinear interpolant's topology ------------------------------------------------------------------------- */
+
+/* Finds the cells whose values decide how they are cut: counts them, and once the counts are summed lists them. */
+struct hewn_mc33_ask_push {
+    HEWN_UINT cells[3];
+    HEWN_UINT count;
+    HEWN_UINT lists; /* 0: counts, 1: lists */
+    HEWN_UINT pad;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS signs;
+    HEWN_UINTS table; /* hewn_mc33_table */
+    HEWN_UINTS ranks; /* a brick: how many; in the second run: how many in those before it */
+    HEWN_UINTS asked; /* out: slot and sample + 512 * pattern of each */
+};
+
+struct hewn_mc33_decide_push {
+    HEWN_GRID grid;
+    HEWN_UINT count; /* cells that are asked */
+    HEWN_UINTS bricks;
+    HEWN_UINTS table;
+    HEWN_UINTS asked; /* in: as above; out: the first word is the place of the record in the table */
+};
+
+struct hewn_mc33_count_push {
+    HEWN_UINT cells[3];
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS signs;
+    HEWN_UINTS table;
+    HEWN_UINTS ranks;
+    HEWN_UINTS asked;
+    HEWN_UINTS triangle_counts; /* out, a brick */
+    HEWN_UINTS centre_counts;   /* out, a brick: vertices in cells */
+};
+
+struct hewn_mc33_spread_push {
+    HEWN_UINT cells[3];
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS signs;
+    HEWN_UINTS edges;
+    HEWN_UINTS table;
+    HEWN_UINTS ranks;
+    HEWN_UINTS asked;
+    HEWN_UINTS vertex_bases;
+    HEWN_UINTS triangle_bases;
+    HEWN_UINTS centre_bases;
+    HEWN_UINTS vertices; /* out: as in hewn_spread_push; in a cell slot and sample + 512 * description (hewn_patch) */
+    HEWN_UINTS indices;  /* out: slot, sample + 512 * corners of four bits, the cell's first vertex */
+    HEWN_UINT first;     /* number of the first vertex in a cell: they follow those on edges */
+    HEWN_UINT pad;
+};
+
+struct hewn_mc33_centre_push {
+    HEWN_GRID grid;
+    HEWN_UINT count;
+    HEWN_UINT first;
+    HEWN_UINT pad;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS edges;
+    HEWN_FLOATS positions; /* in: records; out: positions */
+    HEWN_FLOATS normals;   /* out */
+    HEWN_UINTS summary;
+};
+
 #endif

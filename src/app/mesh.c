@@ -15,7 +15,9 @@ static const hewn_option options[] = {
      "output, with --to. Required."},
     {0, "res", "N", "Use N cells on the longest side of the bounds. Default: 128."},
     {0, "cell", "H", "Use cells of side H, in the scene's units, instead of --res."},
-    {0, "method", "NAME", "Extract the surface by this method: mc (marching cubes). Default: mc."},
+    {0, "method", "NAME",
+     "Extract the surface by this method: mc (marching cubes) or mc33 (the same, connected as the samples' trilinear "
+     "interpolant is). Default: mc."},
     {0, "bounds", "BOX",
      "Look for the surface in BOX = x0,y0,z0,x1,y1,z1. Default: the scene's own bounds, else found from the field."},
     {0, "open", NULL, "Leave the surface open where it leaves the bounds. Default: close it there with a flat cap."},
@@ -66,8 +68,9 @@ static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *requ
         HEWN_TRY(hewn_bounds_parse(bounds, "--bounds", &request->bounds, error));
         request->desc.bounds = &request->bounds;
     }
-    if (method && strcmp(method, "mc") != 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method is mc, not '%s'", method);
+    if (method && strcmp(method, "mc") != 0 && strcmp(method, "mc33") != 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method is mc or mc33, not '%s'", method);
+    request->desc.method = method && strcmp(method, "mc33") == 0 ? HEWN_METHOD_MC33 : HEWN_METHOD_MARCHING_CUBES;
     request->desc.open = hewn_arguments_has(arguments, "open");
     return HEWN_OK;
 }

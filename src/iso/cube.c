@@ -28,6 +28,12 @@ void hewn_cube_face_corners(uint32_t face, uint32_t corners[4])
     corners[3] = start | last;
 }
 
+bool hewn_cube_edge_in_face(uint32_t edge, uint32_t face)
+{
+    uint32_t axis = face / 2, side = face & 1;
+    return edge / 4 != axis && (hewn_cube_edge_start(edge) >> axis & 1) == side;
+}
+
 bool hewn_cube_edges_share_face(uint32_t edge, uint32_t other)
 {
     uint32_t all_on = 7, all_off = 7;

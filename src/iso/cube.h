@@ -16,6 +16,9 @@ uint32_t hewn_cube_edge_between(uint32_t corner, uint32_t other);
 /* The corners of face 2 * axis + side in order, counter-clockwise seen from outside the cell. */
 void hewn_cube_face_corners(uint32_t face, uint32_t corners[4]);
 
+/* Whether an edge lies in a face. */
+bool hewn_cube_edge_in_face(uint32_t edge, uint32_t face);
+
 /* Whether two edges lie in one face of the cell. */
 bool hewn_cube_edges_share_face(uint32_t edge, uint32_t other);
 

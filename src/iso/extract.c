@@ -152,6 +152,8 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     HEWN_TRY(stage(run, "evaluate", culled, evaluated, 0.5, error));
     if (surface.vertex_count == 0)
         return explain_empty(run, error);
+    if (run->desc->method == HEWN_METHOD_MC33)
+        HEWN_TRY(hewn_mc33_refine(run->extractor, &run->grid, &bricks, &run->workspace, &surface, error));
     mapped_mesh *mesh = hewn_alloc_zero(1, sizeof *mesh);
     if (!mesh)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a mesh");
@@ -160,7 +162,7 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     double extracted = hewn_clock_now();
     if (result == HEWN_OK)
         result = stage(run, "extract", evaluated, extracted, 0.9, error);
-    if (result == HEWN_OK && run->stats->cap_vertices == surface.vertex_count)
+    if (result == HEWN_OK && run->stats->cap_vertices == surface.vertex_count - surface.centre_count)
         result = explain_empty(run, error);
     if (result == HEWN_OK)
         result = hand_over(mesh, &surface, out, error);
@@ -182,6 +184,8 @@ hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *des
     *run.stats = (hewn_extract_stats){0};
     *out = (hewn_triangles){0};
     HEWN_TRY(hewn_grid_lay(desc, &run.grid, &run.stats->bounds, error));
+    if (desc->method == HEWN_METHOD_MC33)
+        HEWN_TRY(hewn_mc33_prepare(extractor, error));
     run.stats->cell =
         desc->cell != 0 ? desc->cell : (run.stats->bounds.hi[0] - run.stats->bounds.lo[0]) / run.grid.cells[0];
     for (int axis = 0; axis < 3; axis++)

@@ -8,6 +8,12 @@
 #include "gpu/gpu.h"
 #include "iso/grid.h"
 
+/* What only the trilinear interpolant's topology needs, made when it is first asked for. */
+typedef struct hewn_mc33_programs {
+    hewn_buffer table; /* hewn_mc33_table */
+    hewn_program *ask, *decide, *count, *spread, *triangles, *centres;
+} hewn_mc33_programs;
+
 struct hewn_extractor {
     hewn_device *device;
     hewn_code *code;
@@ -15,6 +21,7 @@ struct hewn_extractor {
     hewn_buffer table;                                            /* hewn_mc_table */
     hewn_program *cull, *signs, *vertices;                        /* made of the field */
     hewn_program *compact, *link, *classify, *spread, *triangles; /* the same for all */
+    hewn_mc33_programs mc33;
 };
 
 /* As hewn_extractor_create(), with a say in where the field's numbers live. */
@@ -49,15 +56,32 @@ hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_
 
 /* The surface in those bricks, as counts and ranks on the device. */
 typedef struct hewn_surface {
-    uint64_t vertex_count;
+    uint64_t vertex_count; /* in cells too */
     uint64_t triangle_count;
-    double sign_seconds; /* of the seconds that the call took, those that went into the field's signs */
+    uint32_t centre_count; /* vertices in cells: the last ones */
+    double sign_seconds;   /* of the seconds that the call took, those that went into the field's signs */
     const hewn_buffer *links, *signs, *edges, *vertex_bases, *triangle_bases;
+    const hewn_buffer *centre_bases, *ranks, *asked; /* of the trilinear interpolant's topology, else NULL */
 } hewn_surface;
 
 hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct hewn_grid *grid,
                                   const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
                                   hewn_error *error);
+
+/* Makes what the trilinear interpolant's topology needs, if it is not there yet; and lets go of it. */
+hewn_result hewn_mc33_prepare(hewn_extractor *extractor, hewn_error *error);
+void hewn_mc33_clear(hewn_extractor *extractor);
+
+/* Counts a classified surface again with that topology. */
+hewn_result hewn_mc33_refine(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                             hewn_workspace *workspace, hewn_surface *surface, hewn_error *error);
+
+/* Parts of the emission of a refined surface: the records, and after the vertices on edges those in cells. */
+void hewn_mc33_record_spread(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                             const hewn_surface *surface, const hewn_buffer buffers[3], hewn_commands *commands);
+void hewn_mc33_record_centres(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                              const hewn_surface *surface, const hewn_buffer buffers[3], const hewn_buffer *summary,
+                              hewn_commands *commands);
 
 /* What emission adds up. */
 typedef struct hewn_emission {

@@ -123,21 +123,27 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
     hewn_commands *commands;
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, summary, 0, summary->size, 0);
-    record_spread(extractor, grid, bricks, surface, buffers, commands);
+    bool refined = surface->asked;
+    if (refined)
+        hewn_mc33_record_spread(extractor, grid, bricks, surface, buffers, commands);
+    else
+        record_spread(extractor, grid, bricks, surface, buffers, commands);
+    uint64_t on_edges = surface->vertex_count - surface->centre_count;
     struct hewn_vertex_push vertices = {.grid = *grid,
-                                        .count = (uint32_t)surface->vertex_count,
+                                        .count = (uint32_t)on_edges,
                                         .bricks = bricks->list->address,
                                         .positions = buffers[0].address,
                                         .normals = buffers[1].address,
                                         .summary = summary->address};
     hewn_commands_dispatch(commands, extractor->vertices, &vertices, hewn_code_uniforms(extractor->code),
-                           hewn_groups_for(surface->vertex_count, 64));
+                           hewn_groups_for(on_edges, 64));
+    hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
     struct hewn_triangle_push triangles = {.count = (uint32_t)surface->triangle_count,
                                            .links = surface->links->address,
                                            .edges = surface->edges->address,
                                            .indices = buffers[2].address};
-    hewn_commands_dispatch(commands, extractor->triangles, &triangles, &extractor->table,
-                           hewn_groups_for(surface->triangle_count, 64));
+    hewn_commands_dispatch(commands, refined ? extractor->mc33.triangles : extractor->triangles, &triangles,
+                           refined ? NULL : &extractor->table, hewn_groups_for(surface->triangle_count, 64));
     hewn_commands_copy(commands, summary, 0, results, 0, summary->size);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
     const uint32_t *words = results->mapped;

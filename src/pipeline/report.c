@@ -113,7 +113,7 @@ static void print_request(hewn_json *json, const hewn_report *report)
     hewn_json_string(json, "units", report->units);
     hewn_json_string(json, "output", report->output);
     hewn_json_string(json, "format", hewn_mesh_format_name(report->format));
-    hewn_json_string(json, "method", "mc");
+    hewn_json_string(json, "method", report->method == HEWN_METHOD_MC33 ? "mc33" : "mc");
     hewn_json_bool(json, "open", report->open);
     if (report->resolution)
         hewn_json_unsigned(json, "resolution", report->resolution);

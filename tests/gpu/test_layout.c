@@ -136,11 +136,37 @@ static void test_fixed_kernels(void **state)
           MEMBER(hewn_triangle_push, edges, ADDRESS), MEMBER(hewn_triangle_push, indices, ADDRESS));
 }
 
+#define ASKED(type)                                                                                                    \
+    MEMBER(type, cells[0], NUMBER), MEMBER(type, cells[2], NUMBER), MEMBER(type, count, NUMBER),                       \
+        MEMBER(type, bricks, ADDRESS), MEMBER(type, links, ADDRESS), MEMBER(type, signs, ADDRESS),                     \
+        MEMBER(type, table, ADDRESS), MEMBER(type, ranks, ADDRESS), MEMBER(type, asked, ADDRESS)
+
+static void test_trilinear_kernels(void **state)
+{
+    (void)state;
+    CHECK(hewn_mc33_ask_push, ASKED(hewn_mc33_ask_push), MEMBER(hewn_mc33_ask_push, lists, NUMBER));
+    CHECK(hewn_mc33_decide_push, GRID(hewn_mc33_decide_push), MEMBER(hewn_mc33_decide_push, count, NUMBER),
+          MEMBER(hewn_mc33_decide_push, bricks, ADDRESS), MEMBER(hewn_mc33_decide_push, table, ADDRESS),
+          MEMBER(hewn_mc33_decide_push, asked, ADDRESS));
+    CHECK(hewn_mc33_count_push, ASKED(hewn_mc33_count_push), MEMBER(hewn_mc33_count_push, triangle_counts, ADDRESS),
+          MEMBER(hewn_mc33_count_push, centre_counts, ADDRESS));
+    CHECK(hewn_mc33_spread_push, ASKED(hewn_mc33_spread_push), MEMBER(hewn_mc33_spread_push, edges, ADDRESS),
+          MEMBER(hewn_mc33_spread_push, vertex_bases, ADDRESS), MEMBER(hewn_mc33_spread_push, triangle_bases, ADDRESS),
+          MEMBER(hewn_mc33_spread_push, centre_bases, ADDRESS), MEMBER(hewn_mc33_spread_push, vertices, ADDRESS),
+          MEMBER(hewn_mc33_spread_push, indices, ADDRESS), MEMBER(hewn_mc33_spread_push, first, NUMBER));
+    CHECK(hewn_mc33_centre_push, GRID(hewn_mc33_centre_push), MEMBER(hewn_mc33_centre_push, count, NUMBER),
+          MEMBER(hewn_mc33_centre_push, first, NUMBER), MEMBER(hewn_mc33_centre_push, bricks, ADDRESS),
+          MEMBER(hewn_mc33_centre_push, links, ADDRESS), MEMBER(hewn_mc33_centre_push, edges, ADDRESS),
+          MEMBER(hewn_mc33_centre_push, positions, ADDRESS), MEMBER(hewn_mc33_centre_push, normals, ADDRESS),
+          MEMBER(hewn_mc33_centre_push, summary, ADDRESS));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_field_kernels),
         cmocka_unit_test(test_fixed_kernels),
+        cmocka_unit_test(test_trilinear_kernels),
     };
     return cmocka_run_group_tests_name("layout", tests, open_device, close_device);
 }

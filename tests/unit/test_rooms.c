@@ -41,10 +41,10 @@ typedef struct header {
 } header;
 
 static const header headers[] = {
-    {"base", "open"}, {"field", "open"},   {"triangles", "open"},  {"device", "gpu"},  {"check", "mesh"},
-    {"units", "open"}, {"model", "mesh"}, 
-    {"mesh", "mesh"}, {"repair", "mesh"},  {"mesh_views", "mesh"}, {"extract", "iso"}, {"scene", "scene"},
-    {"io", "io"},     {"job", "pipeline"}, {"file_job", "pipeline"}, {"hewn", "hewn"},
+    {"base", "open"},   {"field", "open"},      {"triangles", "open"},    {"device", "gpu"},
+    {"check", "mesh"},  {"units", "open"},      {"model", "mesh"},        {"mesh", "mesh"},
+    {"repair", "mesh"}, {"mesh_views", "mesh"}, {"extract", "iso"},       {"scene", "scene"},
+    {"io", "io"},       {"job", "pipeline"},    {"file_job", "pipeline"}, {"hewn", "hewn"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)

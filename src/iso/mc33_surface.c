@@ -1,0 +1,261 @@
+/* The stages that marching cubes needs in addition for the trilinear interpolant's topology: ask the values of the
+ * cells that signs alone do not decide, count again, and emit with vertices in cells. */
+#include <string.h>
+
+#include "base/error.h"
+#include "iso/extractor.h"
+#include "iso/mc33.h"
+
+extern const char hewn_text_iso_head[], hewn_text_mc33_decide[], hewn_text_mc33_centres[];
+
+#define HEWN_SHADER(name)                                                                                              \
+    extern const unsigned char hewn_shader_##name[];                                                                   \
+    extern const size_t hewn_shader_##name##_size;
+HEWN_SHADER(mc33_ask)
+HEWN_SHADER(mc33_count)
+HEWN_SHADER(mc33_spread)
+HEWN_SHADER(mc33_triangles)
+#undef HEWN_SHADER
+
+/* --- programs ----------------------------------------------------------------------------------------------------- */
+
+static hewn_result create_table(hewn_extractor *extractor, hewn_error *error)
+{
+    hewn_mc33_table table;
+    HEWN_TRY(hewn_mc33_table_derive(&table, error));
+    uint64_t bytes = table.count * sizeof *table.words;
+    hewn_result result = hewn_buffer_create(extractor->device, "table of configurations", bytes, HEWN_BUFFER_UPLOAD,
+                                            &extractor->mc33.table, error);
+    if (result == HEWN_OK)
+        memcpy(extractor->mc33.table.mapped, table.words, bytes);
+    hewn_mc33_table_destroy(&table);
+    return result;
+}
+
+static hewn_result create_fixed(hewn_extractor *extractor, hewn_error *error)
+{
+    hewn_mc33_programs *own = &extractor->mc33;
+    const struct {
+        const char *name;
+        const unsigned char *spirv;
+        size_t bytes, push;
+        hewn_program **place;
+    } kernels[] = {
+        {"mc33_ask", hewn_shader_mc33_ask, hewn_shader_mc33_ask_size, sizeof(struct hewn_mc33_ask_push), &own->ask},
+        {"mc33_count", hewn_shader_mc33_count, hewn_shader_mc33_count_size, sizeof(struct hewn_mc33_count_push),
+         &own->count},
+        {"mc33_spread", hewn_shader_mc33_spread, hewn_shader_mc33_spread_size, sizeof(struct hewn_mc33_spread_push),
+         &own->spread},
+        {"mc33_triangles", hewn_shader_mc33_triangles, hewn_shader_mc33_triangles_size,
+         sizeof(struct hewn_triangle_push), &own->triangles},
+    };
+    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
+        hewn_program_desc desc = {.name = kernels[i].name,
+                                  .spirv = (const uint32_t *)(const void *)kernels[i].spirv,
+                                  .spirv_bytes = kernels[i].bytes,
+                                  .push_bytes = (uint32_t)kernels[i].push};
+        HEWN_TRY(hewn_program_create(extractor->device, &desc, kernels[i].place, error));
+    }
+    return HEWN_OK;
+}
+
+static hewn_result create_all(hewn_extractor *extractor, hewn_error *error)
+{
+    HEWN_TRY(create_table(extractor, error));
+    HEWN_TRY(create_fixed(extractor, error));
+    hewn_kernel_desc decide = {"mc33_decide", hewn_text_iso_head, hewn_text_mc33_decide, HEWN_FLAVOUR_POINT,
+                               sizeof(struct hewn_mc33_decide_push)};
+    hewn_kernel_desc centres = {"mc33_centres", hewn_text_iso_head, hewn_text_mc33_centres, HEWN_FLAVOUR_GRADIENT,
+                                sizeof(struct hewn_mc33_centre_push)};
+    HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &decide, &extractor->mc33.decide, error));
+    return hewn_code_program(extractor->device, extractor->code, &centres, &extractor->mc33.centres, error);
+}
+
+hewn_result hewn_mc33_prepare(hewn_extractor *extractor, hewn_error *error)
+{
+    if (extractor->mc33.centres)
+        return HEWN_OK;
+    hewn_result result = create_all(extractor, error);
+    if (result != HEWN_OK)
+        hewn_mc33_clear(extractor);
+    return result;
+}
+
+void hewn_mc33_clear(hewn_extractor *extractor)
+{
+    hewn_mc33_programs *own = &extractor->mc33;
+    hewn_program **programs[] = {&own->ask, &own->decide, &own->count, &own->spread, &own->triangles, &own->centres};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        hewn_program_destroy(extractor->device, programs[i]);
+    hewn_buffer_destroy(extractor->device, &own->table);
+}
+
+/* --- counting ----------------------------------------------------------------------------------------------------- */
+
+typedef struct refinement {
+    const hewn_extractor *extractor;
+    const struct hewn_grid *grid;
+    const hewn_bricks *bricks;
+    hewn_surface *surface;
+    hewn_buffer *ranks, *triangles, *centres, *totals, *results, *scratch;
+} refinement;
+
+static hewn_result take_buffers(refinement *run, hewn_workspace *workspace, hewn_error *error)
+{
+    uint64_t a_brick = (uint64_t)4 * run->bricks->count;
+    const struct {
+        const char *what;
+        uint64_t bytes;
+        hewn_buffer_use use;
+        hewn_buffer **place;
+    } wanted[] = {
+        {"asked cells a brick", a_brick, HEWN_BUFFER_DEVICE, &run->ranks},
+        {"triangles a brick", a_brick, HEWN_BUFFER_DEVICE, &run->triangles},
+        {"vertices in cells a brick", a_brick, HEWN_BUFFER_DEVICE, &run->centres},
+        {"totals", 24, HEWN_BUFFER_DEVICE, &run->totals},
+        {"totals", 24, HEWN_BUFFER_READBACK, &run->results},
+        {"scratch of sums", hewn_scan_scratch_bytes(run->bricks->count), HEWN_BUFFER_DEVICE, &run->scratch},
+    };
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+        HEWN_TRY(
+            hewn_workspace_take(workspace, wanted[i].what, wanted[i].bytes, wanted[i].use, wanted[i].place, error));
+    return HEWN_OK;
+}
+
+static void record_ask(const refinement *run, uint64_t asked, hewn_commands *commands)
+{
+    struct hewn_mc33_ask_push push = {.count = run->bricks->count,
+                                      .lists = asked != 0,
+                                      .bricks = run->bricks->list->address,
+                                      .links = run->surface->links->address,
+                                      .signs = run->surface->signs->address,
+                                      .table = run->extractor->mc33.table.address,
+                                      .ranks = run->ranks->address,
+                                      .asked = asked};
+    memcpy(push.cells, run->grid->cells, sizeof push.cells);
+    hewn_commands_dispatch(commands, run->extractor->mc33.ask, &push, NULL, hewn_groups_for(run->bricks->count, 32));
+}
+
+static void record_sum(const refinement *run, const hewn_buffer *counts, uint32_t total, hewn_commands *commands)
+{
+    hewn_scan_record(run->extractor->scan, commands, counts->address, run->bricks->count,
+                     run->totals->address + (uint64_t)8 * total, run->scratch->address);
+}
+
+static void record_count(const refinement *run, uint64_t asked, hewn_commands *commands)
+{
+    struct hewn_mc33_count_push push = {.count = run->bricks->count,
+                                        .bricks = run->bricks->list->address,
+                                        .links = run->surface->links->address,
+                                        .signs = run->surface->signs->address,
+                                        .table = run->extractor->mc33.table.address,
+                                        .ranks = run->ranks->address,
+                                        .asked = asked,
+                                        .triangle_counts = run->triangles->address,
+                                        .centre_counts = run->centres->address};
+    memcpy(push.cells, run->grid->cells, sizeof push.cells);
+    hewn_commands_dispatch(commands, run->extractor->mc33.count, &push, NULL, hewn_groups_for(run->bricks->count, 32));
+}
+
+static hewn_result find_asked(const refinement *run, uint32_t *count, hewn_error *error)
+{
+    hewn_commands *commands;
+    HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
+    record_ask(run, 0, commands);
+    record_sum(run, run->ranks, 0, commands);
+    hewn_commands_copy(commands, run->totals, 0, run->results, 0, 8);
+    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    const uint32_t *totals = run->results->mapped;
+    HEWN_TRY(hewn_scan_check(totals, "cells that values decide", error));
+    *count = totals[0];
+    return HEWN_OK;
+}
+
+static hewn_result decide_and_count(const refinement *run, uint32_t count, const hewn_buffer *asked, hewn_error *error)
+{
+    hewn_commands *commands;
+    HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
+    if (count > 0) {
+        record_ask(run, asked->address, commands);
+        struct hewn_mc33_decide_push push = {.grid = *run->grid,
+                                             .count = count,
+                                             .bricks = run->bricks->list->address,
+                                             .table = run->extractor->mc33.table.address,
+                                             .asked = asked->address};
+        hewn_commands_dispatch(commands, run->extractor->mc33.decide, &push, hewn_code_uniforms(run->extractor->code),
+                               hewn_groups_for(count, 64));
+    }
+    record_count(run, asked->address, commands);
+    record_sum(run, run->triangles, 1, commands);
+    record_sum(run, run->centres, 2, commands);
+    hewn_commands_copy(commands, run->totals, 0, run->results, 0, 24);
+    return hewn_commands_submit(&commands, NULL, error);
+}
+
+hewn_result hewn_mc33_refine(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                             hewn_workspace *workspace, hewn_surface *surface, hewn_error *error)
+{
+    refinement run = {.extractor = extractor, .grid = grid, .bricks = bricks, .surface = surface};
+    uint32_t count = 0;
+    hewn_buffer *asked;
+    HEWN_TRY(take_buffers(&run, workspace, error));
+    HEWN_TRY(find_asked(&run, &count, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "asked cells", (uint64_t)8 * count, HEWN_BUFFER_DEVICE, &asked, error));
+    HEWN_TRY(decide_and_count(&run, count, asked, error));
+    const uint32_t *totals = run.results->mapped;
+    HEWN_TRY(hewn_scan_check(totals + 2, "triangles", error));
+    HEWN_TRY(hewn_scan_check(totals + 4, "vertices in cells", error));
+    uint32_t sum[2] = {(uint32_t)(surface->vertex_count + totals[4]),
+                       (uint32_t)((surface->vertex_count + totals[4]) >> 32)};
+    HEWN_TRY(hewn_scan_check(sum, "vertices", error));
+    surface->triangle_count = totals[2];
+    surface->centre_count = totals[4];
+    surface->vertex_count += totals[4];
+    surface->triangle_bases = run.triangles;
+    surface->centre_bases = run.centres;
+    surface->ranks = run.ranks;
+    surface->asked = asked;
+    return HEWN_OK;
+}
+
+/* --- emission ----------------------------------------------------------------------------------------------------- */
+
+void hewn_mc33_record_spread(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                             const hewn_surface *surface, const hewn_buffer buffers[3], hewn_commands *commands)
+{
+    struct hewn_mc33_spread_push push = {.count = bricks->count,
+                                         .bricks = bricks->list->address,
+                                         .links = surface->links->address,
+                                         .signs = surface->signs->address,
+                                         .edges = surface->edges->address,
+                                         .table = extractor->mc33.table.address,
+                                         .ranks = surface->ranks->address,
+                                         .asked = surface->asked->address,
+                                         .vertex_bases = surface->vertex_bases->address,
+                                         .triangle_bases = surface->triangle_bases->address,
+                                         .centre_bases = surface->centre_bases->address,
+                                         .vertices = buffers[0].address,
+                                         .indices = buffers[2].address,
+                                         .first = (uint32_t)(surface->vertex_count - surface->centre_count)};
+    memcpy(push.cells, grid->cells, sizeof push.cells);
+    hewn_commands_dispatch(commands, extractor->mc33.spread, &push, NULL, hewn_groups_for(bricks->count, 32));
+}
+
+void hewn_mc33_record_centres(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                              const hewn_surface *surface, const hewn_buffer buffers[3], const hewn_buffer *summary,
+                              hewn_commands *commands)
+{
+    if (surface->centre_count == 0)
+        return;
+    struct hewn_mc33_centre_push push = {.grid = *grid,
+                                         .count = surface->centre_count,
+                                         .first = (uint32_t)(surface->vertex_count - surface->centre_count),
+                                         .bricks = bricks->list->address,
+                                         .links = surface->links->address,
+                                         .edges = surface->edges->address,
+                                         .positions = buffers[0].address,
+                                         .normals = buffers[1].address,
+                                         .summary = summary->address};
+    hewn_commands_dispatch(commands, extractor->mc33.centres, &push, hewn_code_uniforms(extractor->code),
+                           hewn_groups_for(surface->centre_count, 64));
+}
