@@ -3,7 +3,6 @@
  *
  * Without files a torus is written in each format that all can read, into a folder of its own, which goes again at the
  * end. The files are in the page cache. */
-#define _DEFAULT_SOURCE /* mkdtemp */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
