@@ -12,6 +12,10 @@
 /* Every device lets a workgroup share this much memory (Vulkan's least maxComputeSharedMemorySize). */
 enum { TABLE_BYTES = 16384 };
 
+/* Tables of more are slower to compile and to run than literals on lavapipe, and one of 5 KiB with the code of
+ * Prospero crashes SwiftShader's compiler. */
+enum { CHOSEN_TABLE_BYTES = 4096 };
+
 /* Whole vectors, and at least one: a uniform block cannot be empty. */
 static uint64_t parameter_bytes(const hewn_listing *listing)
 {
@@ -23,7 +27,8 @@ static hewn_number_place choose_place(const hewn_device *device, const hewn_list
 {
     uint64_t bytes = parameter_bytes(listing);
     bool on_cpu = device->info.kind == HEWN_DEVICE_CPU;
-    bool table = bytes <= TABLE_BYTES && bytes <= device->max_uniform_range;
+    uint64_t most = numbers == HEWN_NUMBERS_AUTO ? CHOSEN_TABLE_BYTES : TABLE_BYTES;
+    bool table = bytes <= most && bytes <= device->max_uniform_range;
     if (numbers == HEWN_NUMBERS_IN_CODE || (numbers == HEWN_NUMBERS_AUTO && on_cpu && !table))
         return HEWN_PLACE_CODE;
     if (on_cpu && table)

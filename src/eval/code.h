@@ -22,7 +22,7 @@ typedef enum hewn_flavour {
 /* Where the field's numbers live. In a buffer, another number of the same field needs no compilation. In the code it
  * does, and the first compilation is a little shorter. Values, bounds and gradients have the same bits either way. */
 typedef enum hewn_numbers {
-    HEWN_NUMBERS_AUTO, /* in a buffer; in the code on CPU devices where there are more than 4,096 */
+    HEWN_NUMBERS_AUTO, /* in a buffer; in the code on CPU devices where there are more than 1,024 */
     HEWN_NUMBERS_IN_BUFFER,
     HEWN_NUMBERS_IN_CODE
 } hewn_numbers;
