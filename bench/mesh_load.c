@@ -64,8 +64,8 @@ static void run_once(const contender *entry, const char *path, int run, outcome 
     double begin = hewn_clock_now();
     out->loaded = entry->load(path);
     out->seconds[run] = hewn_clock_now() - begin;
-    out->refused = !out->loaded.mesh;
-    if (!out->refused)
+    out->refused = out->loaded.faces == 0;
+    if (out->loaded.mesh)
         entry->release(out->loaded.mesh);
 }
 
@@ -84,7 +84,7 @@ static void measure(const char *path, int runs)
     for (int c = 0; c < CONTENDERS; c++) {
         double seconds = bench_median(outcomes[c].seconds, runs);
         if (outcomes[c].refused)
-            printf("%-10s refused the file\n", contenders[c].name);
+            printf("%-10s made no mesh of it\n", contenders[c].name);
         else
             printf("%-10s %9.3f %9.0f %8.2fx %10llu %10llu\n", contenders[c].name, seconds, mebibytes / seconds,
                    seconds / ours, outcomes[c].loaded.vertices, outcomes[c].loaded.faces);
