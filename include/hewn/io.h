@@ -50,7 +50,7 @@ typedef struct hewn_write_desc {
     const char *name;        /* of the object; NULL: the file's name without its extension */
     /* Of the positions; what a model knows itself goes before them. Without a unit triangle buffers are taken to be in
      * metres. The file of a model of unknown unit says nothing (GLB takes metres, 3MF millimetres), nor does it of axes
-     * where the model knows none and no unit is given. */
+     * where the model knows none and no unit is given (GLB and 3MF then take them to be their own). */
     const hewn_unit *unit;
     hewn_axis up;
     const hewn_progress *progress; /* or NULL; the stage is "write" */

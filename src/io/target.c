@@ -5,7 +5,7 @@
 hewn_result hewn_target_find(const hewn_writing *job, const hewn_unit *unit, hewn_axis up, hewn_conversion *out,
                              hewn_error *error)
 {
-    hewn_model empty = {.unit = job->unit, .up = job->up, .up_known = true};
+    hewn_model empty = {.unit = job->unit, .up = job->up, .up_known = job->up_known};
     return hewn_model_convert(&empty, unit, &up, out, error);
 }
 

@@ -1,5 +1,7 @@
 #include "lib3mf_read.h"
 
+#include <cstdlib>
+
 #ifdef HEWN_HAS_LIB3MF
 
 #include <lib3mf/Model/COM/NMR_DLLInterfaces.h>
@@ -9,6 +11,26 @@ using namespace NMR;
 bool lib3mf_is_there(void)
 {
     return true;
+}
+
+static bool take_mesh(PLib3MFModelMeshObject *object, lib3mf_facts *out)
+{
+    out->positions = static_cast<float *>(std::calloc(out->vertices + 1U, 3 * sizeof(float)));
+    out->corners = static_cast<uint32_t *>(std::calloc(out->triangles + 1U, 3 * sizeof(uint32_t)));
+    bool good = out->positions && out->corners;
+    for (uint32_t v = 0; good && v < out->vertices; v++) {
+        MODELMESHVERTEX vertex{};
+        good = lib3mf_meshobject_getvertex(object, v, &vertex) == LIB3MF_OK;
+        for (uint32_t axis = 0; axis < 3; axis++)
+            out->positions[3 * v + axis] = vertex.m_fPosition[axis];
+    }
+    for (uint32_t t = 0; good && t < out->triangles; t++) {
+        MODELMESHTRIANGLE triangle{};
+        good = lib3mf_meshobject_gettriangle(object, t, &triangle) == LIB3MF_OK;
+        for (uint32_t k = 0; k < 3; k++)
+            out->corners[3 * t + k] = triangle.m_nIndices[k];
+    }
+    return good;
 }
 
 static bool take_object(PLib3MFModelResource *resource, lib3mf_facts *out)
@@ -27,6 +49,8 @@ static bool take_object(PLib3MFModelResource *resource, lib3mf_facts *out)
     out->manifold = manifold != 0;
     for (int axis = 0; axis < 3; axis++)
         out->corner[axis] = vertex.m_fPosition[axis];
+    lib3mf_forget(out);
+    good = good && take_mesh(object, out);
     lib3mf_release(resource);
     return good;
 }
@@ -81,3 +105,11 @@ bool lib3mf_read(const char *path, lib3mf_facts *out)
 }
 
 #endif
+
+void lib3mf_forget(lib3mf_facts *facts)
+{
+    std::free(facts->positions);
+    std::free(facts->corners);
+    facts->positions = nullptr;
+    facts->corners = nullptr;
+}

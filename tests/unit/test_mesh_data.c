@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "hewn/io.h"
+#include "lib3mf_read.h"
 
 enum { PATH = 4096 };
 
@@ -152,6 +153,30 @@ static void round_trip(const hewn_model *model, const hewn_mesh *mesh, uint32_t 
     hewn_model_destroy(&again);
 }
 
+/* 3MF is read by another library, which keeps floats. */
+static void round_trip_3mf(const hewn_model *model, bool closed)
+{
+    char path[64];
+    lib3mf_facts facts;
+    hewn_triangles triangles;
+    if (!lib3mf_is_there())
+        return;
+    snprintf(path, sizeof path, "round_trip_%d.3mf", (int)getpid());
+    assert_works(hewn_model_write(model, path, NULL, error));
+    assert_works(hewn_triangles_from_model(model, &triangles, error));
+    assert_true(lib3mf_read(path, &facts));
+    unlink(path);
+    assert_int_equal(facts.warnings, 0);
+    assert_int_equal(facts.vertices, triangles.vertex_count);
+    assert_int_equal(facts.triangles, triangles.triangle_count);
+    assert_true(facts.manifold == closed);
+    assert_memory_equal(facts.corners, triangles.indices, 12 * triangles.triangle_count);
+    for (uint64_t i = 0; i < 3 * triangles.vertex_count; i++)
+        assert_true(facts.positions[i] == triangles.positions[i]);
+    lib3mf_forget(&facts);
+    hewn_triangles_destroy(&triangles);
+}
+
 /* --- counts ------------------------------------------------------------------------------------------------------- */
 
 /* Edges with more than two faces, or two that run the same way, are split and counted, and what is left is manifold. */
@@ -195,6 +220,8 @@ static void compare(const char *folder, const stats *wanted)
     assert_int_equal(boundary_edges(mesh), wanted->boundary);
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
         round_trip(&model, mesh, isolated, &formats[i]);
+    if (wanted->faces > 0)
+        round_trip_3mf(&model, wanted->boundary == 0);
     int64_t before = euler_number(mesh);
     assert_works(hewn_mesh_triangulate(mesh, error));
     assert_valid(mesh);
