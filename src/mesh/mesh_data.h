@@ -67,11 +67,6 @@ static inline uint32_t mesh_ccw(const hewn_mesh *mesh, uint32_t h)
     return mesh->prev[h] ^ 1;
 }
 
-static inline uint32_t mesh_cw(const hewn_mesh *mesh, uint32_t h)
-{
-    return mesh->next[h ^ 1];
-}
-
 static inline bool mesh_on_boundary(const hewn_mesh *mesh, uint32_t v)
 {
     return mesh->vert_half[v] != HEWN_NONE && mesh->face[mesh->vert_half[v]] == HEWN_NONE;

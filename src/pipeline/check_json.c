@@ -42,26 +42,13 @@ static void print_crossings(hewn_json *json, const hewn_check *check)
 
 void hewn_json_check(hewn_json *json, const char *key, const hewn_check *check)
 {
-    const hewn_certificate *certificate = &check->certificate;
     hewn_json_object(json, key);
-    hewn_json_bool(json, "closed", certificate->closed);
-    hewn_json_bool(json, "manifold", certificate->manifold);
-    hewn_json_bool(json, "oriented", certificate->oriented);
+    hewn_json_certificate(json, &check->certificate);
     hewn_json_bool(json, "orientable", check->orientable);
-    hewn_json_unsigned(json, "components", certificate->components);
-    hewn_json_integer(json, "genus", certificate->genus);
     hewn_json_integer(json, "euler", check->euler);
-    hewn_json_number(json, "volume", certificate->volume);
-    hewn_json_number(json, "area", certificate->area);
-    hewn_json_box(json, "bounds", &certificate->bounds);
-    hewn_json_number(json, "max_residual", certificate->max_residual);
     hewn_json_unsigned(json, "edges", check->edges);
-    hewn_json_unsigned(json, "boundary_edges", certificate->boundary_edges);
     hewn_json_unsigned(json, "boundary_loops", check->boundary_loops);
-    hewn_json_unsigned(json, "non_manifold_edges", certificate->non_manifold_edges);
-    hewn_json_unsigned(json, "non_manifold_vertices", certificate->non_manifold_vertices);
     hewn_json_unsigned(json, "unoriented_edges", check->unoriented_edges);
-    hewn_json_unsigned(json, "degenerate_faces", certificate->degenerate_faces);
     hewn_json_unsigned(json, "duplicate_faces", check->duplicate_faces);
     hewn_json_unsigned(json, "isolated_vertices", check->isolated_vertices);
     print_crossings(json, check);

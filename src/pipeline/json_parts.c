@@ -21,6 +21,23 @@ void hewn_json_box(hewn_json *json, const char *key, const hewn_box *box)
     hewn_json_end_object(json);
 }
 
+void hewn_json_certificate(hewn_json *json, const hewn_certificate *certificate)
+{
+    hewn_json_bool(json, "closed", certificate->closed);
+    hewn_json_bool(json, "manifold", certificate->manifold);
+    hewn_json_bool(json, "oriented", certificate->oriented);
+    hewn_json_unsigned(json, "components", certificate->components);
+    hewn_json_integer(json, "genus", certificate->genus);
+    hewn_json_number(json, "volume", certificate->volume);
+    hewn_json_number(json, "area", certificate->area);
+    hewn_json_box(json, "bounds", &certificate->bounds);
+    hewn_json_number(json, "max_residual", certificate->max_residual);
+    hewn_json_unsigned(json, "boundary_edges", certificate->boundary_edges);
+    hewn_json_unsigned(json, "non_manifold_edges", certificate->non_manifold_edges);
+    hewn_json_unsigned(json, "non_manifold_vertices", certificate->non_manifold_vertices);
+    hewn_json_unsigned(json, "degenerate_faces", certificate->degenerate_faces);
+}
+
 /* Microseconds are all that a wall clock is good for; more digits only make the file hard to read. */
 static double microseconds(double seconds)
 {

@@ -8,6 +8,9 @@
 void hewn_json_vector(hewn_json *json, const char *key, const double vector[3]);
 void hewn_json_box(hewn_json *json, const char *key, const hewn_box *box);
 
+/* The fields of a certificate, into an object that is open. */
+void hewn_json_certificate(hewn_json *json, const hewn_certificate *certificate);
+
 /* "seconds" and "stages". */
 void hewn_json_stages(hewn_json *json, const hewn_report_stage *stages, uint32_t count, double seconds);
 

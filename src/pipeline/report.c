@@ -144,25 +144,6 @@ static void print_extraction(hewn_json *json, const hewn_report *report)
     hewn_json_unsigned(json, "validation_messages", report->validation_messages);
 }
 
-static void print_certificate(hewn_json *json, const hewn_certificate *certificate)
-{
-    hewn_json_object(json, "certificate");
-    hewn_json_bool(json, "closed", certificate->closed);
-    hewn_json_bool(json, "manifold", certificate->manifold);
-    hewn_json_bool(json, "oriented", certificate->oriented);
-    hewn_json_unsigned(json, "components", certificate->components);
-    hewn_json_integer(json, "genus", certificate->genus);
-    hewn_json_number(json, "volume", certificate->volume);
-    hewn_json_number(json, "area", certificate->area);
-    hewn_json_box(json, "bounds", &certificate->bounds);
-    hewn_json_number(json, "max_residual", certificate->max_residual);
-    hewn_json_unsigned(json, "boundary_edges", certificate->boundary_edges);
-    hewn_json_unsigned(json, "non_manifold_edges", certificate->non_manifold_edges);
-    hewn_json_unsigned(json, "non_manifold_vertices", certificate->non_manifold_vertices);
-    hewn_json_unsigned(json, "degenerate_faces", certificate->degenerate_faces);
-    hewn_json_end_object(json);
-}
-
 static void print_result(hewn_json *json, const hewn_report *report)
 {
     hewn_json_object(json, "peak");
@@ -173,7 +154,9 @@ static void print_result(hewn_json *json, const hewn_report *report)
     hewn_json_unsigned(json, "vertices", report->vertices);
     hewn_json_unsigned(json, "faces", report->faces);
     hewn_json_end_object(json);
-    print_certificate(json, &report->certificate);
+    hewn_json_object(json, "certificate");
+    hewn_json_certificate(json, &report->certificate);
+    hewn_json_end_object(json);
 }
 
 hewn_result hewn_report_write(const hewn_report *report, const char *path, hewn_error *error)
