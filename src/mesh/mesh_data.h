@@ -61,7 +61,7 @@ static inline uint32_t mesh_tail(const hewn_mesh *mesh, uint32_t h)
     return mesh->head[h ^ 1];
 }
 
-/* The next half-edge that leaves the same tail, counter-clockwise and clockwise. */
+/* The next half-edge that leaves the same tail, counter-clockwise. */
 static inline uint32_t mesh_ccw(const hewn_mesh *mesh, uint32_t h)
 {
     return mesh->prev[h] ^ 1;

@@ -2,6 +2,8 @@
 #ifndef HEWN_TESTS_CLI_MESH_FILES_H
 #define HEWN_TESTS_CLI_MESH_FILES_H
 
+#include <unistd.h>
+
 #include "json_read.h"
 #include "run.h"
 
@@ -67,6 +69,22 @@ static inline void assert_same_files(const char *folder, const char *a, const ch
 static inline char *read_text(const char *folder, const char *name)
 {
     return run_read_file(run_path(folder, name), NULL);
+}
+
+/* Runs what must succeed, and returns its report; the caller frees the text. */
+static inline char *report_of(const char *folder, run_desc desc)
+{
+    int count = 0;
+    while (desc.arguments[count])
+        count++;
+    desc.arguments[count] = "--report";
+    desc.arguments[count + 1] = "report.json";
+    run_result result = run_in(0, folder, desc);
+    run_result_destroy(&result);
+    char *report = read_text(folder, "report.json");
+    assert_true(json_is_valid(report));
+    assert_int_equal(unlink(run_path(folder, "report.json")), 0);
+    return report;
 }
 
 #endif

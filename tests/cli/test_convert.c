@@ -30,22 +30,6 @@ static void assert_bounds(const char *info, double x0, double y0, double z0, dou
     }
 }
 
-/* Converts, and reads the report. */
-static char *convert(const char *folder, run_desc desc)
-{
-    int count = 0;
-    while (desc.arguments[count])
-        count++;
-    desc.arguments[count] = "--report";
-    desc.arguments[count + 1] = "report.json";
-    run_result result = run_in(0, folder, desc);
-    run_result_destroy(&result);
-    char *report = read_text(folder, "report.json");
-    assert_true(json_is_valid(report));
-    assert_int_equal(unlink(run_path(folder, "report.json")), 0);
-    return report;
-}
-
 /* Through every format: the same box, quadrilaterals where they can be. */
 static void test_formats(void **state)
 {
@@ -58,7 +42,7 @@ static void test_formats(void **state)
     char *folder = make_box_folder();
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         const char *name = formats[i].name;
-        char *report = convert(folder, (run_desc){.arguments = {"convert", "box.obj", "-o", name}});
+        char *report = report_of(folder, (run_desc){.arguments = {"convert", "box.obj", "-o", name}});
         assert_string_equal(json_string(report, "from"), "obj");
         assert_true(json_number(report, "counts.faces") == 6);
         assert_true(json_number(report, "not_kept.cut_faces") == (formats[i].polygons ? 0 : 6));
@@ -84,10 +68,10 @@ static void test_all_pairs(void **state)
     for (int i = 0; i < 5; i++) {
         char from[16], to[16];
         snprintf(from, sizeof from, "a.%s", names[i]);
-        free(convert(folder, (run_desc){.arguments = {"convert", "box.obj", "-o", from}}));
+        free(report_of(folder, (run_desc){.arguments = {"convert", "box.obj", "-o", from}}));
         for (int j = 0; j < 6; j++) {
             snprintf(to, sizeof to, "b.%s", names[j]);
-            free(convert(folder, (run_desc){.arguments = {"convert", from, "-o", to}}));
+            free(report_of(folder, (run_desc){.arguments = {"convert", from, "-o", to}}));
             if (j == 5)
                 continue;
             char *info = info_of(folder, to);
@@ -116,7 +100,7 @@ static void test_units_and_axes(void **state)
     assert_string_equal(json_string(info, "unit"), "m");
     assert_string_equal(json_string(info, "up"), "+Y");
     free(info);
-    char *report = convert(folder, desc);
+    char *report = report_of(folder, desc);
     assert_string_equal(json_string(report, "conversion.unit_before"), "in");
     assert_string_equal(json_string(report, "conversion.unit_after"), "m");
     assert_true(json_is_null(report, "conversion.unit_in_file"));
@@ -131,7 +115,7 @@ static void test_units_and_axes(void **state)
     free(report);
     /* Back to where it was. */
     desc = (run_desc){.arguments = {"convert", "b.glb", "--to-unit", "in", "--to-up", "+Z", "-o", "c.off"}};
-    report = convert(folder, desc);
+    report = report_of(folder, desc);
     assert_string_equal(json_string(report, "conversion.unit_in_file"), "m");
     assert_string_equal(json_string(report, "conversion.up_in_file"), "+Y");
     free(report);
@@ -150,7 +134,7 @@ static void test_assumed(void **state)
     run_result result = run_in(0, folder, desc);
     assert_has(result.err, "unit m (assumed); up +Y (assumed)\n");
     run_result_destroy(&result);
-    char *report = convert(folder, desc);
+    char *report = report_of(folder, desc);
     assert_true(json_bool(report, "conversion.unit_assumed"));
     assert_true(json_bool(report, "conversion.up_assumed"));
     assert_true(json_is_null(report, "conversion.unit_before"));
@@ -177,21 +161,21 @@ static void test_known_and_unknown(void **state)
         assert_true(json_is_null(info, "up"));
         free(info);
         run_desc desc = {.arguments = {"convert", "box.obj", "--unit", "ft", "--up", "X", "-o", names[i]}};
-        free(convert(folder, desc));
+        free(report_of(folder, desc));
         info = info_of(folder, names[i]);
         assert_string_equal(json_string(info, "unit"), "ft");
         assert_string_equal(json_string(info, "up"), "+X");
         free(info);
         desc = (run_desc){.arguments = {"convert", "box.obj", "--unit", "mm", "-o", "half.obj"}};
-        free(convert(folder, desc));
+        free(report_of(folder, desc));
         desc = (run_desc){.arguments = {"convert", "half.obj", "-o", i == 0 ? "half.ply" : names[i]}};
-        free(convert(folder, desc));
+        free(report_of(folder, desc));
         info = info_of(folder, desc.arguments[3]);
         assert_string_equal(json_string(info, "unit"), "mm");
         assert_true(json_is_null(info, "up"));
         free(info);
-        free(convert(folder,
-                     (run_desc){.arguments = {"convert", "box.obj", "--unit", "ft", "--up", "X", "-o", names[i]}}));
+        free(report_of(folder,
+                       (run_desc){.arguments = {"convert", "box.obj", "--unit", "ft", "--up", "X", "-o", names[i]}}));
         desc = (run_desc){
             .arguments = {"convert", names[i], "--unit", "in", "--up", "y", "--to-unit", "ft", "-o", "c.obj"}};
         result = run_in(0, folder, desc);
@@ -238,7 +222,7 @@ static void test_nothing_is_touched(void **state)
     static const char *const chain[] = {"a.obj", "b.ply", "c.obj", "c.obj", "sub/b.ply"};
     run_subfolder(folder, "sub"); /* an object is called after its file */
     for (int i = 0; i < 4; i++) {
-        char *report = convert(folder, (run_desc){.arguments = {"convert", chain[i], "-o", chain[i + 1]}});
+        char *report = report_of(folder, (run_desc){.arguments = {"convert", chain[i], "-o", chain[i + 1]}});
         assert_int_equal(json_count(report, "not_kept.attributes"), 0);
         assert_true(json_number(report, "not_kept.rounded_vertices") == 0);
         free(report);
@@ -265,7 +249,7 @@ static void test_losses_are_told(void **state)
                            "double precision (1 vertex rounded to floats, by at most 1.5e-09); "
                            "1 vertex without a face\n");
     run_result_destroy(&result);
-    char *report = convert(folder, desc);
+    char *report = report_of(folder, desc);
     assert_true(json_number(report, "not_kept.cut_faces") == 1);
     assert_int_equal(json_count(report, "not_kept.attributes"), 2);
     assert_string_equal(json_string(report, "not_kept.attributes.0"), "vertex uv");
@@ -442,9 +426,9 @@ static void test_real_files(void **state)
         const char *path = run_data_file(files[i].name);
         char *folder = run_folder_create();
         char *before = info_of(folder, path);
-        free(convert(folder, (run_desc){.arguments = {"convert", path, "-o", "a.ply"}}));
-        free(convert(folder, (run_desc){.arguments = {"convert", "a.ply", "-o", "a.obj"}}));
-        free(convert(folder, (run_desc){.arguments = {"convert", "a.obj", "-o", "b.ply"}}));
+        free(report_of(folder, (run_desc){.arguments = {"convert", path, "-o", "a.ply"}}));
+        free(report_of(folder, (run_desc){.arguments = {"convert", "a.ply", "-o", "a.obj"}}));
+        free(report_of(folder, (run_desc){.arguments = {"convert", "a.obj", "-o", "b.ply"}}));
         char *after = info_of(folder, "b.ply");
         static const char *const same[] = {"counts.vertices", "counts.faces", "counts.quads", "bounds.lo.0",
                                            "bounds.hi.2"};

@@ -23,21 +23,6 @@ static void write_torn_box(const char *path, int faces, int turned, double off)
     run_write_file(path, text);
 }
 
-static char *repair(const char *folder, run_desc desc)
-{
-    int count = 0;
-    while (desc.arguments[count])
-        count++;
-    desc.arguments[count] = "--report";
-    desc.arguments[count + 1] = "report.json";
-    run_result result = run_in(0, folder, desc);
-    run_result_destroy(&result);
-    char *report = read_text(folder, "report.json");
-    assert_true(json_is_valid(report));
-    assert_int_equal(unlink(run_path(folder, "report.json")), 0);
-    return report;
-}
-
 static void assert_whole_box(const char *report)
 {
     assert_true(json_bool(report, "certificate.closed"));
@@ -61,7 +46,7 @@ static void test_torn_box(void **state)
     assert_has(result.err, "\n  faces turned over                      3\n");
     assert_has(result.err, "closed, manifold, oriented, no self-intersections");
     run_result_destroy(&result);
-    char *report = repair(folder, desc);
+    char *report = report_of(folder, desc);
     assert_true(json_number(report, "counts_before.vertices") == 36);
     assert_true(json_number(report, "counts.vertices") == 8);
     assert_true(json_number(report, "repair.welded_vertices") == 28);
@@ -84,7 +69,7 @@ static void test_attributes_survive(void **state)
     (void)state;
     char *folder = run_folder_create();
     write_torn_box(run_path(folder, "a.obj"), 12, 5, 0);
-    free(repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.obj"}}));
+    free(report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.obj"}}));
     char *info = info_of(folder, "b.obj");
     assert_true(json_number(info, "counts.vertices") == 8);
     int groups = 0;
@@ -113,13 +98,13 @@ static void test_weld(void **state)
     (void)state;
     char *folder = run_folder_create();
     write_torn_box(run_path(folder, "a.obj"), 12, 0, 1e-5);
-    char *report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply"}});
+    char *report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply"}});
     assert_false(json_bool(report, "certificate.closed"));
     free(report);
-    report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--weld", "1e-4"}});
+    report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--weld", "1e-4"}});
     assert_whole_box(report);
     free(report);
-    report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--no-weld"}});
+    report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--no-weld"}});
     assert_true(json_number(report, "repair.welded_vertices") == 0);
     assert_true(json_number(report, "counts.vertices") == 36);
     free(report);
@@ -132,18 +117,19 @@ static void test_fill(void **state)
     char *folder = run_folder_create();
     write_torn_box(run_path(folder, "a.obj"), 11, 0, 0);
     run_desc desc = {.arguments = {"repair", "a.obj", "-o", "a.obj", "--fill", "3"}};
-    char *report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "open.ply"}});
+    char *report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "open.ply"}});
     assert_false(json_bool(report, "certificate.closed"));
     assert_true(json_number(report, "certificate.boundary_edges") == 3);
     free(report);
-    report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "open.ply", "--fill", "2"}});
+    report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "open.ply", "--fill", "2"}});
     assert_true(json_number(report, "repair.filled_holes") == 0);
     free(report);
-    report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--fill=all", "--fill-flat"}});
+    report =
+        report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--fill=all", "--fill-flat"}});
     assert_true(json_number(report, "repair.added_vertices") == 0);
     assert_whole_box(report);
     free(report);
-    report = repair(folder, desc);
+    report = report_of(folder, desc);
     assert_true(json_number(report, "repair.filled_holes") == 1);
     assert_true(json_number(report, "repair.added_faces") == 1);
     assert_whole_box(report);
@@ -160,11 +146,11 @@ static void test_small_parts(void **state)
     assert_non_null(both);
     snprintf(both, strlen(box) + 200, "%sv 5 0 0\nv 5.01 0 0\nv 5 0.01 0\nf -3 -2 -1\n", box);
     run_write_file(run_path(folder, "a.obj"), both);
-    char *report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--drop-small", "2"}});
+    char *report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--drop-small", "2"}});
     assert_true(json_number(report, "repair.removed_components") == 1);
     assert_whole_box(report);
     free(report);
-    report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--drop-share", "0.1"}});
+    report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--drop-share", "0.1"}});
     assert_true(json_number(report, "repair.removed_faces") == 1);
     free(report);
     free(both);
@@ -178,10 +164,10 @@ static void test_rules(void **state)
     (void)state;
     char *folder = run_folder_create();
     write_torn_box(run_path(folder, "a.obj"), 12, 12, 0);
-    char *report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply"}});
+    char *report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply"}});
     assert_true(json_number(report, "certificate.volume") < 0);
     free(report);
-    report = repair(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--outward", "always"}});
+    report = report_of(folder, (run_desc){.arguments = {"repair", "a.obj", "-o", "b.ply", "--outward", "always"}});
     assert_true(json_number(report, "certificate.volume") > 0);
     assert_true(json_number(report, "repair.turned_components") == 1);
     free(report);
@@ -189,12 +175,12 @@ static void test_rules(void **state)
     static const char *const rules[] = {"one", "both", "none"};
     static const int left[] = {1, 2, 0};
     for (int i = 0; i < 3; i++) {
-        report = repair(folder, (run_desc){.arguments = {"repair", "t.obj", "-o", "b.ply", "--opposite", rules[i]}});
+        report = report_of(folder, (run_desc){.arguments = {"repair", "t.obj", "-o", "b.ply", "--opposite", rules[i]}});
         assert_true(json_number(report, "counts.faces") == left[i]);
         free(report);
     }
     run_write_file(run_path(folder, "d.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 9 9 9\nf 1 2 3\nf 2 3 4\n");
-    report = repair(
+    report = report_of(
         folder, (run_desc){.arguments = {"repair", "d.obj", "-o", "b.ply", "--keep-directions", "--keep-isolated"}});
     assert_true(json_number(report, "repair.turned_faces") == 0);
     assert_true(json_number(report, "counts.vertices") == 7);
@@ -299,10 +285,10 @@ static void test_a_part_that_comes_apart(void **state)
     (void)state;
     const char *path = run_data_file("mesh-misc/featuretype.STL");
     char *folder = run_folder_create();
-    char *report = repair(folder, (run_desc){.arguments = {"repair", path, "-o", "a.stl"}});
+    char *report = report_of(folder, (run_desc){.arguments = {"repair", path, "-o", "a.stl"}});
     assert_true(json_number(report, "certificate.boundary_loops") == 16);
     free(report);
-    report = repair(folder, (run_desc){.arguments = {"repair", path, "-o", "a.stl", "--weld", "1e-4"}});
+    report = report_of(folder, (run_desc){.arguments = {"repair", path, "-o", "a.stl", "--weld", "1e-4"}});
     assert_true(json_bool(report, "certificate.closed"));
     assert_true(json_number(report, "certificate.genus") == 9);
     assert_true(json_number(report, "certificate.self_intersections") == 0);
@@ -319,11 +305,12 @@ static void test_real_files(void **state)
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         const char *path = run_data_file(files[i]);
         char *folder = run_folder_create();
-        char *report = repair(folder, (run_desc){.arguments = {"repair", path, "-o", "a.ply"}});
+        char *report = report_of(folder, (run_desc){.arguments = {"repair", path, "-o", "a.ply"}});
         assert_true(json_bool(report, "certificate.manifold"));
         assert_true(json_bool(report, "certificate.oriented"));
         free(report);
-        report = repair(folder, (run_desc){.arguments = {"repair", "a.ply", "-o", "b.ply", "--no-weld", "--strict"}});
+        report =
+            report_of(folder, (run_desc){.arguments = {"repair", "a.ply", "-o", "b.ply", "--no-weld", "--strict"}});
         free(report);
         run_folder_destroy(folder);
     }
