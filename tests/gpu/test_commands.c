@@ -95,15 +95,26 @@ static void submit(hewn_commands *commands)
     assert_null(commands);
 }
 
+/* What is empty is recorded without a complaint and writes nothing, here or beside it. */
 static void test_empty(void **state)
 {
     fixture *f = *state;
     submit(begin(f));
     hewn_commands *commands = begin(f);
-    hewn_commands_dispatch(commands, f->count, "            ", NULL, (hewn_dispatch_size){0, 1, 1});
+    hewn_commands_fill(commands, &f->data, 0, WORDS * 4, 5);
+    hewn_commands_fill(commands, &f->other, 0, WORDS * 4, 6);
+    const struct {
+        uint64_t to;
+        uint32_t limit, pad;
+    } push = {.to = f->other.address, .limit = WORDS};
+    hewn_commands_dispatch(commands, f->count, &push, NULL, (hewn_dispatch_size){0, 1, 1});
+    hewn_commands_dispatch(commands, f->count, &push, NULL, (hewn_dispatch_size){1, 0, 9});
     hewn_commands_copy(commands, &f->data, 0, &f->other, 0, 0);
-    hewn_commands_fill(commands, &f->data, 0, 0, 0);
+    hewn_commands_fill(commands, &f->other, 0, 0, 7);
+    hewn_commands_copy(commands, &f->other, 0, &f->back, 0, WORDS * 4);
     submit(commands);
+    for (uint32_t i = 0; i < WORDS; i++)
+        assert_int_equal(((const uint32_t *)f->back.mapped)[i], 6);
     commands = NULL;
     hewn_commands_destroy(&commands);
 }
