@@ -10,6 +10,9 @@
 extern "C" {
 #endif
 
+/* The most cells on a side. */
+#define HEWN_MAX_RESOLUTION 8184u
+
 typedef struct hewn_extractor hewn_extractor;
 
 typedef enum hewn_method {
@@ -29,7 +32,7 @@ typedef struct hewn_extract_desc {
 
 /* What an extraction did. Seconds are wall time on the caller's thread; begin counts from the start of the run. */
 typedef struct hewn_extract_stage {
-    const char *name; /* cull, evaluate, extract, read_back */
+    const char *name; /* cull, evaluate, extract, suspects, read_back */
     double begin, end;
 } hewn_extract_stage;
 
@@ -42,6 +45,11 @@ typedef struct hewn_extract_stats {
     uint64_t cap_vertices;  /* that lie on the bounds because the surface was cut there */
     bool left_bounds;       /* the surface reaches the bounds */
     float max_residual;     /* see hewn_certificate */
+    /* Cells beyond the neighbourhood of the surface, in which the field may be of the other sign between the samples:
+     * features thinner than a cell, which the mesh lacks. docs/extraction.md has the definition. */
+    uint64_t suspect_cells;
+    hewn_box first_suspect;   /* where there are any: the first of them, in the order of the grid, x fastest */
+    uint64_t undefined_cells; /* cells out there for which the field has no bounds, and so may not be a number */
     hewn_extract_stage stages[8];
     uint32_t stage_count;
 } hewn_extract_stats;

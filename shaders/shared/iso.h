@@ -195,4 +195,43 @@ struct hewn_mc33_centre_push {
     HEWN_UINTS summary;
 };
 
+/* --- features thinner than a cell --------------------------------------------------------------------------------- */
+
+/* A brick's blocks of 2 x 2 x 2 cells in two words, bit x + 4 y + 16 z of the two. */
+struct hewn_cut_push {
+    HEWN_UINT cells[3];
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS signs;
+    HEWN_UINTS cuts; /* out: the blocks with surface */
+};
+
+struct hewn_remote_push {
+    HEWN_UINT top[3]; /* as in hewn_link_push */
+    HEWN_UINT levels;
+    HEWN_UINT count;
+    HEWN_UINT pad;
+    HEWN_UINTS bricks;
+    HEWN_UINTS cuts;
+    HEWN_UINTS remote; /* out: the blocks beyond the neighbourhood of the surface, and of the grid */
+    HEWN_UINTS states[HEWN_MAX_LEVELS];
+};
+
+struct hewn_suspect_push {
+    HEWN_GRID grid;
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS signs;
+    HEWN_UINTS remote;
+    HEWN_UINTS marks;  /* out: suspects, 16 words a brick, two for each of its blocks of 4 x 4 x 4 cells at (k & 1,
+                          k >> 1 & 1, k >> 2 & 1); in Morton's order, x y z from the lowest bit of each digit up */
+    HEWN_UINTS counts; /* HEWN_SUSPECT_WORDS */
+};
+
+/* Each two words, the lower one first. */
+#define HEWN_SUSPECT_CELLS 0u
+#define HEWN_SUSPECT_UNDEFINED 2u
+#define HEWN_SUSPECT_WORDS 4u
+
 #endif

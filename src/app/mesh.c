@@ -155,6 +155,47 @@ static void print_summary(const hewn_report *report)
                 report->open ? "left open" : "closed with a flat cap");
 }
 
+/* Half of the cell that was used, as the option that was given. */
+static void print_finer(const hewn_report *report)
+{
+    const hewn_extract_stats *grid = &report->extraction;
+    if (report->resolution == 0)
+        fprintf(stderr, "--cell %.6g", grid->cell / 2);
+    else if (report->resolution <= HEWN_MAX_RESOLUTION / 2)
+        fprintf(stderr, "--res %u", 2 * report->resolution);
+    else
+        fputs("narrower --bounds", stderr);
+}
+
+/* What the mesh may lack, though nothing about it is wrong. */
+static void print_warnings(const hewn_report *report)
+{
+    const hewn_extract_stats *grid = &report->extraction;
+    const hewn_box *first = &grid->first_suspect;
+    if (grid->suspect_cells > 0) {
+        fprintf(
+            stderr,
+            "hewn: warning: %llu cell%s away from the surface may hold features thinner than a cell, which the mesh "
+            "lacks; the first is at (%.6g, %.6g, %.6g); ",
+            (unsigned long long)grid->suspect_cells, grid->suspect_cells == 1 ? "" : "s",
+            (first->lo[0] + first->hi[0]) / 2, (first->lo[1] + first->hi[1]) / 2, (first->lo[2] + first->hi[2]) / 2);
+        print_finer(report);
+        fputs(" may show them\n", stderr);
+    }
+    if (grid->undefined_cells > 0)
+        fprintf(
+            stderr,
+            "hewn: note: in %llu cell%s away from the surface the field has no bounds (it may divide by zero or not "
+            "be a number), so nothing is known of thin features there\n",
+            (unsigned long long)grid->undefined_cells, grid->undefined_cells == 1 ? "" : "s");
+}
+
+static void print_outcome(const hewn_report *report)
+{
+    print_summary(report);
+    print_warnings(report);
+}
+
 /* --- running ----------------------------------------------------------------------------------------------------- */
 
 /* Meshes once. Where `watch` is not NULL it learns of every file that was read. */
@@ -170,7 +211,7 @@ static hewn_result mesh_once(const mesh_request *request, double began, hewn_wat
     hewn_result result = hewn_mesh_scene(&desc, &report, error);
     hewn_progress_end();
     if (result == HEWN_OK && !request->quiet)
-        print_summary(&report);
+        print_outcome(&report);
     if (result == HEWN_OK && report.validation_messages > 0) /* what the device was told was wrong: a device error */
         result = hewn_fail(error, HEWN_DEVICE_LOST, "the validation layer gave %llu messages",
                            (unsigned long long)report.validation_messages);

@@ -1,5 +1,6 @@
 /* One extraction from beginning to end: lay the grid, cull, classify, emit, hand over. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/alloc.h"
@@ -42,6 +43,31 @@ static hewn_result stage(extraction *run, const char *name, double begin, double
     return HEWN_OK;
 }
 
+/* --- what lies between samples -------------------------------------------------------------------------------------
+ */
+
+static void note_suspects(const extraction *run, const hewn_suspects *suspects)
+{
+    hewn_extract_stats *stats = run->stats;
+    stats->suspect_cells = suspects->cells;
+    stats->undefined_cells = suspects->undefined;
+    for (int axis = 0; axis < 3 && suspects->cells > 0; axis++) {
+        double lo = stats->bounds.lo[axis], hi = stats->bounds.hi[axis], cells = (double)stats->cells[axis];
+        stats->first_suspect.lo[axis] = lo + (hi - lo) * suspects->first[axis] / cells;
+        stats->first_suspect.hi[axis] = lo + (hi - lo) * (suspects->first[axis] + 1) / cells;
+    }
+}
+
+static hewn_result look_between_samples(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface,
+                                        hewn_error *error)
+{
+    double begin = hewn_clock_now();
+    hewn_suspects suspects;
+    HEWN_TRY(hewn_suspects_find(run->extractor, &run->grid, bricks, surface, &run->workspace, &suspects, error));
+    note_suspects(run, &suspects);
+    return stage(run, "suspects", begin, hewn_clock_now(), 0.95, error);
+}
+
 /* --- no surface: why --------------------------------------------------------------------------------------------- */
 
 #define LATTICE 9
@@ -70,8 +96,15 @@ static hewn_result explain_empty(extraction *run, hewn_error *error)
         : nan > 0
             ? "the field is nowhere negative in the bounds, and in places not a number (NaN)"
             : "the field is nowhere negative in the bounds: the shape is empty, or elsewhere, or thinner than a cell";
-    return hewn_fail(error, HEWN_BAD_INPUT, "no surface from (%g, %g, %g) to (%g, %g, %g) with cells of %g: %s",
-                     box->lo[0], box->lo[1], box->lo[2], box->hi[0], box->hi[1], box->hi[2], run->stats->cell, why);
+    char place[128] = "";
+    const hewn_box *first = &run->stats->first_suspect;
+    if (run->stats->suspect_cells > 0 && inside < count)
+        snprintf(place, sizeof place, "; something thinner than a cell may be near (%g, %g, %g)",
+                 (first->lo[0] + first->hi[0]) / 2, (first->lo[1] + first->hi[1]) / 2,
+                 (first->lo[2] + first->hi[2]) / 2);
+    return hewn_fail(error, HEWN_BAD_INPUT, "no surface from (%g, %g, %g) to (%g, %g, %g) with cells of %g: %s%s",
+                     box->lo[0], box->lo[1], box->lo[2], box->hi[0], box->hi[1], box->hi[2], run->stats->cell, why,
+                     place);
 }
 
 /* --- handing over ------------------------------------------------------------------------------------------------ */
@@ -150,8 +183,10 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     HEWN_TRY(hewn_surface_classify(run->extractor, &run->grid, &bricks, &run->workspace, &surface, error));
     double evaluated = culled + surface.sign_seconds;
     HEWN_TRY(stage(run, "evaluate", culled, evaluated, 0.5, error));
-    if (surface.vertex_count == 0)
+    if (surface.vertex_count == 0) {
+        HEWN_TRY(look_between_samples(run, &bricks, &surface, error));
         return explain_empty(run, error);
+    }
     if (run->desc->method == HEWN_METHOD_MC33)
         HEWN_TRY(hewn_mc33_refine(run->extractor, &run->grid, &bricks, &run->workspace, &surface, error));
     mapped_mesh *mesh = hewn_alloc_zero(1, sizeof *mesh);
@@ -165,13 +200,16 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     if (result == HEWN_OK && run->stats->cap_vertices == surface.vertex_count - surface.centre_count)
         result = explain_empty(run, error);
     if (result == HEWN_OK)
+        result = look_between_samples(run, &bricks, &surface, error);
+    double searched = hewn_clock_now();
+    if (result == HEWN_OK)
         result = hand_over(mesh, &surface, out, error);
     if (result != HEWN_OK) {
         release_mapped(mesh);
         return result;
     }
     run->stats->left_bounds = run->desc->open ? touches_bounds(run, out) : run->stats->cap_vertices > 0;
-    return stage(run, "read_back", extracted, hewn_clock_now(), 1, error);
+    return stage(run, "read_back", searched, hewn_clock_now(), 1, error);
 }
 
 hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_triangles *out,

@@ -6,14 +6,16 @@
 #include "base/error.h"
 #include "iso/marching_cubes.h"
 
-extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_vertices[];
+extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_suspects[], hewn_text_vertices[];
 
 #define HEWN_SHADER(name)                                                                                              \
     extern const unsigned char hewn_shader_##name[];                                                                   \
     extern const size_t hewn_shader_##name##_size;
 HEWN_SHADER(compact)
+HEWN_SHADER(cuts)
 HEWN_SHADER(link)
 HEWN_SHADER(classify)
+HEWN_SHADER(remote)
 HEWN_SHADER(spread)
 HEWN_SHADER(triangles)
 #undef HEWN_SHADER
@@ -31,6 +33,8 @@ static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *
         {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT,
           sizeof(struct hewn_vertex_push)},
          &extractor->vertices},
+        {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_suspect_push)},
+         &extractor->suspects.find},
     };
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &kernels[i].desc, kernels[i].place, error));
@@ -52,6 +56,10 @@ static hewn_result create_fixed_programs(hewn_extractor *extractor, hewn_error *
         {"link", hewn_shader_link, hewn_shader_link_size, sizeof(struct hewn_link_push), false, &extractor->link},
         {"classify", hewn_shader_classify, hewn_shader_classify_size, sizeof(struct hewn_classify_push), true,
          &extractor->classify},
+        {"cuts", hewn_shader_cuts, hewn_shader_cuts_size, sizeof(struct hewn_cut_push), false,
+         &extractor->suspects.cuts},
+        {"remote", hewn_shader_remote, hewn_shader_remote_size, sizeof(struct hewn_remote_push), false,
+         &extractor->suspects.remote},
         {"spread", hewn_shader_spread, hewn_shader_spread_size, sizeof(struct hewn_spread_push), true,
          &extractor->spread},
         {"triangles", hewn_shader_triangles, hewn_shader_triangles_size, sizeof(struct hewn_triangle_push), true,
@@ -123,8 +131,10 @@ void hewn_extractor_destroy(hewn_extractor **extractor_place)
     if (!extractor)
         return;
     hewn_device *device = extractor->device;
-    hewn_program **programs[] = {&extractor->cull, &extractor->signs,    &extractor->vertices, &extractor->compact,
-                                 &extractor->link, &extractor->classify, &extractor->spread,   &extractor->triangles};
+    hewn_program **programs[] = {
+        &extractor->cull,          &extractor->signs,           &extractor->vertices,     &extractor->compact,
+        &extractor->link,          &extractor->classify,        &extractor->spread,       &extractor->triangles,
+        &extractor->suspects.cuts, &extractor->suspects.remote, &extractor->suspects.find};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         hewn_program_destroy(device, programs[i]);
     hewn_mc33_clear(extractor);

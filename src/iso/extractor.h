@@ -14,6 +14,11 @@ typedef struct hewn_mc33_programs {
     hewn_program *ask, *decide, *count, *spread, *triangles, *centres;
 } hewn_mc33_programs;
 
+/* What looks for features thinner than a cell. */
+typedef struct hewn_suspect_programs {
+    hewn_program *cuts, *remote, *find;
+} hewn_suspect_programs;
+
 struct hewn_extractor {
     hewn_device *device;
     hewn_code *code;
@@ -21,6 +26,7 @@ struct hewn_extractor {
     hewn_buffer table;                                            /* hewn_mc_table */
     hewn_program *cull, *signs, *vertices;                        /* made of the field */
     hewn_program *compact, *link, *classify, *spread, *triangles; /* the same for all */
+    hewn_suspect_programs suspects;
     hewn_mc33_programs mc33;
 };
 
@@ -93,6 +99,19 @@ typedef struct hewn_emission {
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                               const hewn_surface *surface, const hewn_buffer buffers[3], hewn_workspace *workspace,
                               hewn_emission *out, hewn_error *error);
+
+/* Cells beyond the neighbourhood of the surface that may hold some all the same; docs/extraction.md has the definition.
+ */
+typedef struct hewn_suspects {
+    uint64_t cells;
+    uint64_t undefined;       /* not among them: cells for which the field has no bounds */
+    uint32_t first[3];        /* of the cells, in the order of the grid, x fastest */
+    const hewn_buffer *marks; /* what they are, as hewn_suspect_push says; freed with the workspace */
+} hewn_suspects;
+
+hewn_result hewn_suspects_find(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                               const hewn_surface *surface, hewn_workspace *workspace, hewn_suspects *out,
+                               hewn_error *error);
 
 /* Workgroups of `size` invocations for `count` of them, laid out in two dimensions as shaders/shared/invocation.h reads
  * them. */

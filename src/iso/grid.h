@@ -6,8 +6,7 @@
 
 #include "shared/iso.h"
 
-/* The most cells on a side: a brick's coordinate has ten bits. */
-#define HEWN_MAX_RESOLUTION 8184u
+_Static_assert(HEWN_MAX_RESOLUTION <= 8 * 1023, "a brick's coordinate has ten bits");
 
 /* Lays cells over the bounds of `desc`: the other sides grow symmetrically to whole cells. HEWN_INVALID_ARGUMENT where
  * that makes no sense or where floats at the bounds are too coarse to keep the vertices of a cell apart. */

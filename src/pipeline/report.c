@@ -141,6 +141,12 @@ static void print_extraction(hewn_json *json, const hewn_report *report)
     hewn_json_unsigned(json, "cap_vertices", stats->cap_vertices);
     hewn_json_unsigned(json, "cells_visited", stats->cells_visited);
     hewn_json_unsigned(json, "bricks_active", stats->bricks_active);
+    hewn_json_unsigned(json, "suspect_cells", stats->suspect_cells);
+    if (stats->suspect_cells > 0)
+        hewn_json_box(json, "first_suspect", &stats->first_suspect);
+    else
+        hewn_json_string(json, "first_suspect", NULL);
+    hewn_json_unsigned(json, "undefined_cells", stats->undefined_cells);
     hewn_json_unsigned(json, "validation_messages", report->validation_messages);
 }
 

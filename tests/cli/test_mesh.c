@@ -72,6 +72,9 @@ static void test_report_has_all_names(void **state)
         "cap_vertices",
         "cells_visited",
         "bricks_active",
+        "suspect_cells",
+        "first_suspect",
+        "undefined_cells",
         "peak.host_bytes",
         "counts.faces",
         "certificate",
@@ -150,8 +153,8 @@ static void test_stages_cover_the_wall_time(void **state)
         run_desc desc = {.arguments = {"mesh", csg(), "-o", "a.ply", "--report", "r.json"}, .folder = folder};
         run_result result = run_expecting(0, &desc);
         char *report = run_read_file(run_path(folder, "r.json"), NULL);
-        static const char *const names[] = {"startup", "load",      "compile", "cull", "evaluate",
-                                            "extract", "read_back", "certify", "write"};
+        static const char *const names[] = {"startup", "load",     "compile",   "cull",    "evaluate",
+                                            "extract", "suspects", "read_back", "certify", "write"};
         for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
             char quoted[32];
             snprintf(quoted, sizeof quoted, "\"name\": \"%s\"", names[i]);
@@ -379,6 +382,70 @@ static void test_cap_and_open(void **state)
     run_folder_destroy(folder);
 }
 
+/* --- what a mesh may lack ---------------------------------------------------------------------------------------- */
+
+static void check_warning(const char *folder, const char *option, const char *value, const char *remedy)
+{
+    run_desc desc = {.arguments = {"mesh", "thin.lua", "-o", "s.ply", option, value}, .folder = folder};
+    run_result result = run_expecting(0, &desc);
+    assert_has(result.err, "hewn: warning: ");
+    assert_has(result.err, " cells away from the surface may hold features thinner than a cell");
+    assert_has(result.err, "the first is at (");
+    assert_has(result.err, remedy);
+    run_result_destroy(&result);
+    char *report = mesh_report(folder, desc);
+    assert_true(json_number(report, "suspect_cells") > 100);
+    assert_true(json_number(report, "undefined_cells") == 0);
+    double lo = json_number(report, "first_suspect.lo.2"), hi = json_number(report, "first_suspect.hi.2");
+    assert_true(lo < 0.31 && hi > 0.308 && fabs(hi - lo - json_number(report, "cell")) < 1e-9);
+    assert_proven(report);
+    free(report);
+    desc.arguments[6] = "-q";
+    result = run_expecting(0, &desc);
+    assert_string_equal(result.err, "");
+    run_result_destroy(&result);
+}
+
+static void test_thin_features_are_warned_of(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    run_write_file(run_path(folder, "thin.lua"), "bounds(-1, -1, -1, 1, 1, 1)\n"
+                                                 "local plate = box(1, 1, 0.002):move(0.3, 0.3, 0.309)\n"
+                                                 "return sphere(0.4):move(-0.5, -0.5, -0.5) | plate");
+    check_warning(folder, "--res", "32", "--res 64 may show them");
+    check_warning(folder, "--cell", "0.0625", "--cell 0.03125 may show them");
+    run_desc desc = {.arguments = {"mesh", "thin.lua", "-o", "s.ply", "--cell", "0.03"}, .folder = folder};
+    desc.arguments[1] = csg();
+    char *report = mesh_report(folder, desc);
+    assert_true(json_number(report, "suspect_cells") == 0);
+    assert_true(json_is_null(report, "first_suspect"));
+    free(report);
+    run_result result = run_expecting(0, &desc);
+    assert_null(strstr(result.err, "warning"));
+    run_result_destroy(&result);
+    run_folder_destroy(folder);
+}
+
+static void test_undefined_cells_are_noted(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    run_write_file(run_path(folder, "nan.lua"), "bounds(-1, -1, -1, 1, 1, 1)\nreturn max(sqrt(x + 0.5) - 0.9, "
+                                                "abs(y) - 0.5, abs(z) - 0.5)");
+    run_desc desc = {.arguments = {"mesh", "nan.lua", "-o", "s.ply", "--res", "32"}, .folder = folder};
+    run_result result = run_expecting(0, &desc);
+    assert_has(result.err, "hewn: note: in ");
+    assert_has(result.err, "the field has no bounds");
+    assert_null(strstr(result.err, "warning"));
+    run_result_destroy(&result);
+    char *report = mesh_report(folder, desc);
+    assert_true(json_number(report, "suspect_cells") == 0);
+    assert_true(json_number(report, "undefined_cells") > 500);
+    free(report);
+    run_folder_destroy(folder);
+}
+
 /* Bounds that are found from the field keep clear of the surface, at any resolution. */
 static void test_found_bounds(void **state)
 {
@@ -455,6 +522,8 @@ int main(void)
         cmocka_unit_test(test_standard_output),
         cmocka_unit_test(test_piped_scene),
         cmocka_unit_test(test_cap_and_open),
+        cmocka_unit_test(test_thin_features_are_warned_of),
+        cmocka_unit_test(test_undefined_cells_are_noted),
         cmocka_unit_test(test_found_bounds),
         cmocka_unit_test(test_parameters),
         cmocka_unit_test(test_validation_layer_is_silent),

@@ -53,6 +53,8 @@ static void test_shipped_scenes(void **state)
         char *report = mesh_scene(folder, run_path(scenes, entry->d_name), "scene.glb", "64", "LP_NUM_THREADS");
         assert_proven(report, entry->d_name);
         assert_false(json_bool(report, "left_bounds"));
+        assert_true(json_number(report, "suspect_cells") == 0);
+        assert_true(json_number(report, "undefined_cells") == 0);
         free(report);
         report = mesh_scene_connected(folder, run_path(scenes, entry->d_name));
         assert_proven(report, entry->d_name);

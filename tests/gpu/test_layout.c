@@ -161,12 +161,29 @@ static void test_trilinear_kernels(void **state)
           MEMBER(hewn_mc33_centre_push, summary, ADDRESS));
 }
 
+static void test_suspect_kernels(void **state)
+{
+    (void)state;
+    CHECK(hewn_cut_push, MEMBER(hewn_cut_push, cells[0], NUMBER), MEMBER(hewn_cut_push, count, NUMBER),
+          MEMBER(hewn_cut_push, bricks, ADDRESS), MEMBER(hewn_cut_push, links, ADDRESS),
+          MEMBER(hewn_cut_push, signs, ADDRESS), MEMBER(hewn_cut_push, cuts, ADDRESS));
+    CHECK(hewn_remote_push, MEMBER(hewn_remote_push, top[0], NUMBER), MEMBER(hewn_remote_push, levels, NUMBER),
+          MEMBER(hewn_remote_push, count, NUMBER), MEMBER(hewn_remote_push, bricks, ADDRESS),
+          MEMBER(hewn_remote_push, cuts, ADDRESS), MEMBER(hewn_remote_push, remote, ADDRESS),
+          MEMBER(hewn_remote_push, states[0], ADDRESS), MEMBER(hewn_remote_push, states[4], ADDRESS));
+    CHECK(hewn_suspect_push, GRID(hewn_suspect_push), MEMBER(hewn_suspect_push, count, NUMBER),
+          MEMBER(hewn_suspect_push, bricks, ADDRESS), MEMBER(hewn_suspect_push, signs, ADDRESS),
+          MEMBER(hewn_suspect_push, remote, ADDRESS), MEMBER(hewn_suspect_push, marks, ADDRESS),
+          MEMBER(hewn_suspect_push, counts, ADDRESS));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_field_kernels),
         cmocka_unit_test(test_fixed_kernels),
         cmocka_unit_test(test_trilinear_kernels),
+        cmocka_unit_test(test_suspect_kernels),
     };
     return cmocka_run_group_tests_name("layout", tests, open_device, close_device);
 }
