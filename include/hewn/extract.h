@@ -13,9 +13,22 @@ extern "C" {
 typedef struct hewn_extractor hewn_extractor;
 
 typedef enum hewn_method {
+    HEWN_METHOD_DEFAULT,        /* what is best for a field: HEWN_METHOD_DC */
     HEWN_METHOD_MARCHING_CUBES, /* after Lorensen and Cline 1987, with one rule for ambiguous faces */
-    HEWN_METHOD_MC33            /* the same with the topology of the samples' trilinear interpolant (Chernyaev 1995) */
+    HEWN_METHOD_MC33,           /* the same with the topology of the samples' trilinear interpolant (Chernyaev 1995) */
+    HEWN_METHOD_NETS, /* vertices in cells, at the mean of the crossings (surface nets, Gibson 1998), always manifold */
+    HEWN_METHOD_DC    /* the same where crossings and normals put them (dual contouring, Ju and others 2002) */
 } hewn_method;
+
+/* What commands and reports call a method: mc, mc33, nets, dc. The default's is that of the method it stands for; NULL
+ * past the last one. Static storage. */
+HEWN_API const char *hewn_method_name(hewn_method method);
+
+/* The method of that name. False where there is none. */
+HEWN_API bool hewn_method_named(const char *name, hewn_method *out);
+
+/* Whether a method's vertices lie in cells, so that it makes quads. */
+HEWN_API bool hewn_method_is_dual(hewn_method method);
 
 /* Where and how finely. Zero everywhere but `bounds` is a sensible default. */
 typedef struct hewn_extract_desc {
@@ -23,7 +36,8 @@ typedef struct hewn_extract_desc {
     uint32_t resolution; /* cells on the longest side; 0: 128 (ignored where `cell` is given) */
     double cell;         /* length of a cell's side in scene units; 0: from `resolution` */
     hewn_method method;
-    bool open; /* leave the surface open where it leaves the bounds, instead of closing it there with a cap */
+    bool open;  /* leave the surface open where it leaves the bounds, instead of closing it there with a cap */
+    bool quads; /* by a dual method: two triangles for each quad and nothing else, see hewn_triangles.paired */
     const hewn_progress *progress;
 } hewn_extract_desc;
 
@@ -34,7 +48,8 @@ typedef struct hewn_extract_stage {
 } hewn_extract_stage;
 
 typedef struct hewn_extract_stats {
-    hewn_box bounds; /* as grown to whole cells */
+    hewn_method method; /* that was used: not the default */
+    hewn_box bounds;    /* as grown to whole cells */
     double cell;
     uint64_t cells[3];
     uint64_t cells_visited; /* cells whose corners were evaluated */
@@ -42,6 +57,11 @@ typedef struct hewn_extract_stats {
     uint64_t cap_vertices;  /* that lie on the bounds because the surface was cut there */
     bool left_bounds;       /* the surface reaches the bounds */
     float max_residual;     /* see hewn_certificate */
+    /* By dual contouring: */
+    uint64_t edge_vertices;   /* on sharp edges */
+    uint64_t corner_vertices; /* at corners */
+    uint64_t planes_found;    /* that no crossing of the cell had seen */
+    uint64_t features_lost;   /* vertices still off the surface: what their cell holds is finer than it can tell */
     hewn_extract_stage stages[8];
     uint32_t stage_count;
 } hewn_extract_stats;

@@ -272,7 +272,7 @@ struct hewn_dual_vertex_push {
 struct hewn_dual_quad_push {
     HEWN_GRID grid;
     HEWN_UINT count;
-    HEWN_UINT pad;
+    HEWN_UINT named; /* 1: crossings are wanted */
     HEWN_UINTS bricks;
     HEWN_UINTS links;
     HEWN_UINTS signs;
@@ -280,7 +280,7 @@ struct hewn_dual_quad_push {
     HEWN_UINTS loops;
     HEWN_FLOATS positions;
     HEWN_UINTS indices;   /* in: records; out: two triangles a quad */
-    HEWN_UINTS crossings; /* out, a quad: number of the crossing on its edge; or none (0): not wanted */
+    HEWN_UINTS crossings; /* out, a quad: number of the crossing on its edge */
 };
 
 #endif

@@ -26,6 +26,7 @@ static void release_mapped(void *owner)
 typedef struct extraction {
     const hewn_extractor *extractor;
     const hewn_extract_desc *desc;
+    hewn_method method;
     struct hewn_grid grid;
     hewn_workspace workspace;
     hewn_extract_stats *stats;
@@ -108,6 +109,16 @@ static hewn_result hand_over(mapped_mesh *mesh, const hewn_surface *surface, hew
     return HEWN_OK;
 }
 
+static void note_emission(hewn_extract_stats *stats, const hewn_emission *emission)
+{
+    stats->cap_vertices = emission->caps;
+    stats->max_residual = emission->max_residual;
+    stats->edge_vertices = emission->edge_vertices;
+    stats->corner_vertices = emission->corner_vertices;
+    stats->planes_found = emission->planes_found;
+    stats->features_lost = emission->features_lost;
+}
+
 static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface, mapped_mesh *mesh,
                              hewn_error *error)
 {
@@ -117,11 +128,15 @@ static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, const h
         HEWN_TRY(
             hewn_buffer_create(mesh->device, what[i], 12 * items[i], HEWN_BUFFER_DEVICE, &mesh->buffers[i], error));
     hewn_emission emission = {0};
-    HEWN_TRY(hewn_surface_emit(run->extractor, &run->grid, bricks, surface, mesh->buffers, &run->workspace, &emission,
-                               error));
-    run->stats->cap_vertices = emission.caps;
-    run->stats->max_residual = emission.max_residual;
-    return HEWN_OK;
+    if (hewn_method_is_dual(run->method))
+        HEWN_TRY(hewn_dual_emit(run->extractor, &run->grid, bricks, surface, run->method, mesh->buffers,
+                                &run->workspace, NULL, &emission, error));
+    else
+        HEWN_TRY(hewn_surface_emit(run->extractor, &run->grid, bricks, surface, mesh->buffers, &run->workspace,
+                                   &emission, error));
+    note_emission(run->stats, &emission);
+    run->stats->left_bounds = emission.capped_crossings > 0;
+    return emission.capped_crossings == surface->crossing_count ? explain_empty(run, error) : HEWN_OK;
 }
 
 /* Whether an open surface reaches the bounds: it does where a vertex lies on them. */
@@ -133,6 +148,13 @@ static bool touches_bounds(const extraction *run, const hewn_triangles *triangle
             return true;
     }
     return false;
+}
+
+static hewn_result classify(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, hewn_error *error)
+{
+    if (hewn_method_is_dual(run->method))
+        return hewn_dual_classify(run->extractor, &run->grid, bricks, &run->workspace, surface, error);
+    return hewn_surface_classify(run->extractor, &run->grid, bricks, &run->workspace, surface, error);
 }
 
 static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *error)
@@ -147,12 +169,12 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     HEWN_TRY(stage(run, "cull", start, culled, 0.1, error));
     if (bricks.count == 0)
         return explain_empty(run, error);
-    HEWN_TRY(hewn_surface_classify(run->extractor, &run->grid, &bricks, &run->workspace, &surface, error));
+    HEWN_TRY(classify(run, &bricks, &surface, error));
     double evaluated = culled + surface.sign_seconds;
     HEWN_TRY(stage(run, "evaluate", culled, evaluated, 0.5, error));
-    if (surface.vertex_count == 0)
+    if (surface.crossing_count == 0)
         return explain_empty(run, error);
-    if (run->desc->method == HEWN_METHOD_MC33)
+    if (run->method == HEWN_METHOD_MC33)
         HEWN_TRY(hewn_mc33_refine(run->extractor, &run->grid, &bricks, &run->workspace, &surface, error));
     mapped_mesh *mesh = hewn_alloc_zero(1, sizeof *mesh);
     if (!mesh)
@@ -162,16 +184,29 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     double extracted = hewn_clock_now();
     if (result == HEWN_OK)
         result = stage(run, "extract", evaluated, extracted, 0.9, error);
-    if (result == HEWN_OK && run->stats->cap_vertices == surface.vertex_count - surface.centre_count)
-        result = explain_empty(run, error);
     if (result == HEWN_OK)
         result = hand_over(mesh, &surface, out, error);
     if (result != HEWN_OK) {
         release_mapped(mesh);
         return result;
     }
-    run->stats->left_bounds = run->desc->open ? touches_bounds(run, out) : run->stats->cap_vertices > 0;
+    out->paired = hewn_method_is_dual(run->method);
+    if (run->desc->open)
+        run->stats->left_bounds = touches_bounds(run, out);
     return stage(run, "read_back", extracted, hewn_clock_now(), 1, error);
+}
+
+static hewn_result prepare(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_method method,
+                           hewn_error *error)
+{
+    if (!hewn_method_name(method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no extraction method %d", (int)method);
+    if (desc->quads && !hewn_method_is_dual(method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the method %s makes no quads: its vertices lie on grid edges",
+                         hewn_method_name(method));
+    if (method == HEWN_METHOD_MC33)
+        return hewn_mc33_prepare(extractor, error);
+    return hewn_method_is_dual(method) ? hewn_dual_prepare(extractor, method, error) : HEWN_OK;
 }
 
 hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_triangles *out,
@@ -180,16 +215,17 @@ hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *des
     hewn_extract_stats unwanted;
     extraction run = {
         .extractor = extractor, .desc = desc, .workspace.device = extractor->device, .begin = hewn_clock_now()};
+    run.method = desc->method == HEWN_METHOD_DEFAULT ? HEWN_METHOD_DC : desc->method;
     run.stats = stats ? stats : &unwanted;
-    *run.stats = (hewn_extract_stats){0};
+    *run.stats = (hewn_extract_stats){.method = run.method};
     *out = (hewn_triangles){0};
     HEWN_TRY(hewn_grid_lay(desc, &run.grid, &run.stats->bounds, error));
-    if (desc->method == HEWN_METHOD_MC33)
-        HEWN_TRY(hewn_mc33_prepare(extractor, error));
-    run.stats->cell =
-        desc->cell != 0 ? desc->cell : (run.stats->bounds.hi[0] - run.stats->bounds.lo[0]) / run.grid.cells[0];
+    HEWN_TRY(prepare(extractor, desc, run.method, error));
     for (int axis = 0; axis < 3; axis++)
-        run.stats->cells[axis] = run.grid.cells[axis];
+        run.stats->cells[axis] = run.grid.cells[axis] - 2 * run.grid.rim;
+    run.stats->cell = desc->cell != 0
+                          ? desc->cell
+                          : (run.stats->bounds.hi[0] - run.stats->bounds.lo[0]) / (double)run.stats->cells[0];
     hewn_result result = run_stages(&run, out, error);
     hewn_workspace_clear(&run.workspace);
     if (result != HEWN_OK)
