@@ -7,6 +7,8 @@
 #include "iso/dual_loops.h"
 #include "iso/dual_record.h"
 #include "iso/dual_table.h"
+#include "iso/grid.h"
+#include "iso/quad.h"
 #include "shared/invocation.h"
 
 layout(local_size_x = 64) in;
@@ -33,13 +35,26 @@ uint loop_vertex(uint slot, uvec3 at, uint edge)
     return vertex;
 }
 
-/* Whether corners 1 and 3 are nearer to each other than 0 and 2. */
-bool cut_other_way(uint corners[4])
+/* The edge along `axis` of the cell at `at` that is far along both other axes is the quad's; its vertices in order. */
+void load_corners(uint slot, uvec3 at, uint axis, out uint corners[4], out uvec3 start)
 {
-    vec3 one = load_vector(push.positions, corners[2]) - load_vector(push.positions, corners[0]);
-    vec3 other = load_vector(push.positions, corners[3]) - load_vector(push.positions, corners[1]);
-    precise float length_one = dot(one, one), length_other = dot(other, other);
-    return length_other < length_one;
+    uint u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
+    uvec3 step_u = uvec3(0u), step_v = uvec3(0u);
+    step_u[u] = 1u;
+    step_v[v] = 1u;
+    start = at + step_u + step_v;
+    uint number = sample_number(start);
+    uint word = sign_word(push.signs, owner_slot(push.links, slot, start), number >> 5);
+    bool inside = (word >> (number & 31u) & 1u) != 0u;
+    for (uint i = 0u; i < 4u; i++) {
+        /* (axis, u, v) is right-handed: from u to v is counter-clockwise seen from the edge's end, which is outside
+         * where the edge starts inside. */
+        bool one = i == 1u || i == 2u, other = i >= 2u;
+        bool at_u = inside ? one : other, at_v = inside ? other : one;
+        uvec3 cell = at + (at_u ? step_u : uvec3(0u)) + (at_v ? step_v : uvec3(0u));
+        uint bit_u = at_u ? 0u : 1u, bit_v = at_v ? 0u : 1u; /* where the edge is in that cell */
+        corners[i] = loop_vertex(slot, cell, 4u * axis + (u < v ? bit_u | bit_v << 1 : bit_v | bit_u << 1));
+    }
 }
 
 void main()
@@ -49,33 +64,20 @@ void main()
         return;
     uint slot = push.indices.at[6u * quad], record = push.indices.at[6u * quad + 1u];
     uvec3 at = uvec3(record, record >> 3, record >> 6) & 7u;
-    uint axis = record >> 9, u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
-    uvec3 step_u = uvec3(0u), step_v = uvec3(0u), along = uvec3(0u);
-    step_u[u] = 1u;
-    step_v[v] = 1u;
-    along[axis] = 1u;
-    /* (axis, u, v) is right-handed: around the edge from u to v is counter-clockwise seen from its end. */
-    uint corners[4];
-    bool low_u = u < v;
-    for (uint i = 0u; i < 4u; i++) {
-        bool at_u = i == 1u || i == 2u, at_v = i >= 2u;
-        uvec3 cell = at + (at_u ? step_u : uvec3(0u)) + (at_v ? step_v : uvec3(0u));
-        /* Where the edge is in that cell: far along those axes that the cell did not step along. */
-        uint bit_u = at_u ? 0u : 1u, bit_v = at_v ? 0u : 1u;
-        corners[i] = loop_vertex(slot, cell, 4u * axis + (low_u ? bit_u | bit_v << 1 : bit_v | bit_u << 1));
-    }
-    uvec3 start = at + step_u + step_v;
-    uint number = sample_number(start);
-    uint word = sign_word(push.signs, owner_slot(push.links, slot, start), number >> 5);
-    /* Seen from outside: from the edge's end where it starts inside, else from its start. */
-    if ((word >> (number & 31u) & 1u) == 0u) {
-        uint swapped = corners[1];
-        corners[1] = corners[3];
-        corners[3] = swapped;
-    }
+    uint axis = record >> 9, corners[4];
+    uvec3 start;
+    load_corners(slot, at, axis, corners, start);
+    uint crossing = edge_vertex(push.links, push.edges, slot, at, 4u * axis + 3u);
     if (push.named != 0u)
-        push.crossings.at[quad] = edge_vertex(push.links, push.edges, slot, at, 4u * axis + 3u);
-    uint turn = cut_other_way(corners) ? 1u : 0u;
+        push.crossings.at[quad] = crossing;
+    start += 8u * unpack_brick(push.bricks.at[slot]);
+    vec3 places[4], low;
+    for (uint i = 0u; i < 4u; i++)
+        places[i] = load_vector(push.positions, corners[i]);
+    for (uint i = 0u; i < 3u; i++)
+        low[i] = sample_coordinate(push.grid, i, start[i]);
+    float high = sample_coordinate(push.grid, axis, start[axis] + 1u);
+    uint turn = quad_cut(places, low, high, push.points.at[3u * crossing + axis], axis) & 1u;
     const uint order[6] = uint[6](0u, 1u, 2u, 0u, 2u, 3u);
     for (uint i = 0u; i < 6u; i++)
         push.indices.at[6u * quad + i] = corners[order[i] + turn & 3u];

@@ -278,6 +278,7 @@ struct hewn_dual_quad_push {
     HEWN_UINTS signs;
     HEWN_UINTS edges;
     HEWN_UINTS loops;
+    HEWN_FLOATS points;
     HEWN_FLOATS positions;
     HEWN_UINTS indices;   /* in: records; out: two triangles a quad */
     HEWN_UINTS crossings; /* out, a quad: number of the crossing on its edge */

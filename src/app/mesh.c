@@ -16,8 +16,11 @@ static const hewn_option options[] = {
     {0, "res", "N", "Use N cells on the longest side of the bounds. Default: 128."},
     {0, "cell", "H", "Use cells of side H, in the scene's units, instead of --res."},
     {0, "method", "NAME",
-     "Extract the surface by this method: mc (marching cubes) or mc33 (the same, connected as the samples' trilinear "
-     "interpolant is). Default: mc."},
+     "Extract the surface by this method: mc (marching cubes), mc33 (the same, connected as the samples' trilinear "
+     "interpolant is), nets (a vertex in each cell, at the mean of the crossings) or dc (dual contouring: the same "
+     "with "
+     "sharp edges and corners). Default: dc."},
+    {0, "quads", NULL, "Write the quads of nets or dc, two triangles each, as faces of four corners (OBJ, OFF, PLY)."},
     {0, "bounds", "BOX",
      "Look for the surface in BOX = x0,y0,z0,x1,y1,z1. Default: the scene's own bounds, else found from the field."},
     {0, "open", NULL, "Leave the surface open where it leaves the bounds. Default: close it there with a flat cap."},
@@ -49,6 +52,19 @@ static bool is_dash(const char *path)
     return strcmp(path, "-") == 0;
 }
 
+static hewn_result parse_method(const char *name, hewn_method *out, hewn_error *error)
+{
+    char names[64] = "";
+    if (hewn_method_named(name, out))
+        return HEWN_OK;
+    for (hewn_method method = HEWN_METHOD_DEFAULT + 1; hewn_method_name(method); method++) {
+        size_t length = strlen(names);
+        const char *between = length == 0 ? "" : hewn_method_name(method + 1) ? ", " : " or ";
+        snprintf(names + length, sizeof names - length, "%s%s", between, hewn_method_name(method));
+    }
+    return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method is %s, not '%s'", names, name);
+}
+
 static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
 {
     const char *resolution = hewn_arguments_value(arguments, "res");
@@ -68,9 +84,9 @@ static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *requ
         HEWN_TRY(hewn_bounds_parse(bounds, "--bounds", &request->bounds, error));
         request->desc.bounds = &request->bounds;
     }
-    if (method && strcmp(method, "mc") != 0 && strcmp(method, "mc33") != 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method is mc or mc33, not '%s'", method);
-    request->desc.method = method && strcmp(method, "mc33") == 0 ? HEWN_METHOD_MC33 : HEWN_METHOD_MARCHING_CUBES;
+    if (method)
+        HEWN_TRY(parse_method(method, &request->desc.method, error));
+    request->desc.quads = hewn_arguments_has(arguments, "quads");
     request->desc.open = hewn_arguments_has(arguments, "open");
     return HEWN_OK;
 }

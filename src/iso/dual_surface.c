@@ -286,6 +286,7 @@ static void record_quads(const emission *run, bool keep, hewn_commands *commands
                                        .signs = surface->signs->address,
                                        .edges = surface->edges->address,
                                        .loops = surface->loops->address,
+                                       .points = run->points->address,
                                        .positions = run->buffers[0].address,
                                        .indices = run->buffers[2].address,
                                        .crossings = run->crossing->address};

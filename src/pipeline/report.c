@@ -113,8 +113,9 @@ static void print_request(hewn_json *json, const hewn_report *report)
     hewn_json_string(json, "units", report->units);
     hewn_json_string(json, "output", report->output);
     hewn_json_string(json, "format", hewn_mesh_format_name(report->format));
-    hewn_json_string(json, "method", report->method == HEWN_METHOD_MC33 ? "mc33" : "mc");
+    hewn_json_string(json, "method", hewn_method_name(report->method));
     hewn_json_bool(json, "open", report->open);
+    hewn_json_bool(json, "quads", report->quads);
     if (report->resolution)
         hewn_json_unsigned(json, "resolution", report->resolution);
     else
@@ -141,6 +142,14 @@ static void print_extraction(hewn_json *json, const hewn_report *report)
     hewn_json_unsigned(json, "cap_vertices", stats->cap_vertices);
     hewn_json_unsigned(json, "cells_visited", stats->cells_visited);
     hewn_json_unsigned(json, "bricks_active", stats->bricks_active);
+    if (report->method == HEWN_METHOD_DC) {
+        hewn_json_object(json, "features");
+        hewn_json_unsigned(json, "edge_vertices", stats->edge_vertices);
+        hewn_json_unsigned(json, "corner_vertices", stats->corner_vertices);
+        hewn_json_unsigned(json, "planes_found", stats->planes_found);
+        hewn_json_unsigned(json, "lost", stats->features_lost);
+        hewn_json_end_object(json);
+    }
     hewn_json_unsigned(json, "validation_messages", report->validation_messages);
 }
 
