@@ -24,10 +24,12 @@ const float QEF_NEAR = 1.0e-9;
 
 vec4 qef_planes[QEF_MOST]; /* unit normal, and its product with the plane's points */
 uint qef_count;
+uint qef_taken;  /* a bit for each plane that counts */
 vec4 qef_points; /* sum of the crossings, and how many */
 
 struct Qef {
     vec3 at;
+    vec3 best; /* the best point anywhere */
     uint rank; /* directions that count: 1 in smooth places, 2 at edges, 3 at corners */
     vec3 free; /* where the rank is 2, the direction of the edge */
 };
@@ -40,6 +42,7 @@ bool qef_finite(vec3 v)
 void qef_begin()
 {
     qef_count = 0u;
+    qef_taken = 0xFFFFFFFFu;
     qef_points = vec4(0.0);
 }
 
@@ -92,7 +95,7 @@ mat3 qef_directions()
 {
     vec3 diagonal = vec3(0.0), beside = vec3(0.0); /* of the second: y z, x z, x y */
     for (uint i = 0u; i < qef_count; i++) {
-        vec3 n = qef_planes[i].xyz;
+        vec3 n = (qef_taken >> i & 1u) != 0u ? qef_planes[i].xyz : vec3(0.0);
         diagonal += n * n;
         beside += n.yxx * n.zzy;
     }
@@ -162,8 +165,9 @@ Qef qef_solve(vec3 lo, vec3 hi)
         vec3 sum = vec3(0.0), from = mass + directions * along;
         squares = vec3(0.0);
         for (uint i = 0u; i < qef_count; i++) {
-            vec3 n = qef_planes[i].xyz * directions;
-            precise float off = qef_planes[i].w - dot(qef_planes[i].xyz, from);
+            vec4 plane = (qef_taken >> i & 1u) != 0u ? qef_planes[i] : vec4(0.0);
+            vec3 n = plane.xyz * directions;
+            precise float off = plane.w - dot(plane.xyz, from);
             squares += n * n;
             sum += n * off;
         }
@@ -176,7 +180,8 @@ Qef qef_solve(vec3 lo, vec3 hi)
         result.rank += squares[i] > 0.0 ? 1u : 0u;
         result.free = squares[i] > 0.0 ? result.free : directions[i];
     }
-    result.at = mass + directions * along;
+    result.best = mass + directions * along;
+    result.at = result.best;
     if (any(lessThan(result.at, lo)) || any(greaterThan(result.at, hi))) {
         mat3 root = transpose(directions);
         for (uint i = 0u; i < 3u; i++)
