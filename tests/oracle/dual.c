@@ -353,6 +353,7 @@ hewn_dual_surface oracle_dual_surface(const hewn_field *field, hewn_node root, c
     for (int axis = 0; axis < 3; axis++)
         run.grid.cells[axis] =
             (uint32_t)lround((grown_box.hi[axis] - grown_box.lo[axis]) / run.grid.cell) + 2 * run.grid.open;
+    run.grid.rim = run.grid.open;
     bool *inside = take_signs(&run);
     run.dual = oracle_dual_trace(run.grid.cells, inside, true);
     free(inside);
