@@ -38,12 +38,15 @@ typedef struct hewn_extract_desc {
     hewn_method method;
     bool open;  /* leave the surface open where it leaves the bounds, instead of closing it there with a cap */
     bool quads; /* by a dual method: two triangles for each quad and nothing else, see hewn_triangles.paired */
+    /* By dual contouring: how far, in scene units, the surface may move where triangles are merged to fewer and larger
+     * ones, see docs/extraction.md; 0: all cells are of one size. Not together with `quads`. */
+    double adaptive;
     const hewn_progress *progress;
 } hewn_extract_desc;
 
 /* What an extraction did. Seconds are wall time on the caller's thread; begin counts from the start of the run. */
 typedef struct hewn_extract_stage {
-    const char *name; /* cull, evaluate, extract, read_back */
+    const char *name; /* prepare, cull, evaluate, extract, read_back; where it is adaptive collapse */
     double begin, end;
 } hewn_extract_stage;
 
@@ -62,6 +65,9 @@ typedef struct hewn_extract_stats {
     uint64_t corner_vertices; /* at corners */
     uint64_t planes_found;    /* that no crossing of the cell had seen */
     uint64_t features_lost;   /* vertices still off the surface: what their cell holds is finer than it can tell */
+    /* By adaptive dual contouring; the features above are the uniform surface's too: */
+    uint64_t uniform_vertices, uniform_triangles; /* before the merges */
+    uint64_t octree_merges, pair_merges;          /* in nodes of the octree, and afterwards of neighbours */
     hewn_extract_stage stages[8];
     uint32_t stage_count;
 } hewn_extract_stats;

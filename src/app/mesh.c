@@ -21,6 +21,10 @@ static const hewn_option options[] = {
      "with "
      "sharp edges and corners). Default: dc."},
     {0, "quads", NULL, "Write the quads of nets or dc, two triangles each, as faces of four corners (OBJ, OFF, PLY)."},
+    {0, "adaptive", "ERROR",
+     "Merge the triangles of dc to fewer and larger ones, as far as the surface moves by no more than ERROR, a length "
+     "in "
+     "the scene's units."},
     {0, "bounds", "BOX",
      "Look for the surface in BOX = x0,y0,z0,x1,y1,z1. Default: the scene's own bounds, else found from the field."},
     {0, "open", NULL, "Leave the surface open where it leaves the bounds. Default: close it there with a flat cap."},
@@ -71,6 +75,7 @@ static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *requ
     const char *cell = hewn_arguments_value(arguments, "cell");
     const char *bounds = hewn_arguments_value(arguments, "bounds");
     const char *method = hewn_arguments_value(arguments, "method");
+    const char *adaptive = hewn_arguments_value(arguments, "adaptive");
     if (resolution && cell)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--res and --cell exclude each other");
     if (resolution)
@@ -79,6 +84,11 @@ static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *requ
         HEWN_TRY(hewn_number_parse(cell, "--cell", &request->desc.cell, error));
         if (!(request->desc.cell > 0))
             return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--cell must be greater than 0, not %s", cell);
+    }
+    if (adaptive) {
+        HEWN_TRY(hewn_number_parse(adaptive, "--adaptive", &request->desc.adaptive, error));
+        if (!(request->desc.adaptive > 0))
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--adaptive must be greater than 0, not %s", adaptive);
     }
     if (bounds) {
         HEWN_TRY(hewn_bounds_parse(bounds, "--bounds", &request->bounds, error));

@@ -5,6 +5,7 @@
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "iso/adaptive.h"
 #include "iso/extractor.h"
 
 /* Owns what a finished mesh lies in where that is the device's memory. */
@@ -103,6 +104,7 @@ static hewn_result hand_over(mapped_mesh *mesh, const hewn_surface *surface, hew
                             .positions = mesh->buffers[0].mapped,
                             .normals = mesh->buffers[1].mapped,
                             .indices = mesh->buffers[2].mapped,
+                            .paired = surface->loops,
                             .release = release_mapped,
                             .owner = mesh};
 
@@ -120,7 +122,7 @@ static void note_emission(hewn_extract_stats *stats, const hewn_emission *emissi
 }
 
 static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface, mapped_mesh *mesh,
-                             hewn_error *error)
+                             hewn_dual_hermite *kept, hewn_error *error)
 {
     static const char *const what[3] = {"positions", "normals", "indices"};
     uint64_t items[3] = {surface->vertex_count, surface->vertex_count, surface->triangle_count};
@@ -130,7 +132,7 @@ static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, const h
     hewn_emission emission = {0};
     if (hewn_method_is_dual(run->method))
         HEWN_TRY(hewn_dual_emit(run->extractor, &run->grid, bricks, surface, run->method, mesh->buffers,
-                                &run->workspace, NULL, &emission, error));
+                                &run->workspace, run->desc->adaptive > 0 ? kept : NULL, &emission, error));
     else
         HEWN_TRY(hewn_surface_emit(run->extractor, &run->grid, bricks, surface, mesh->buffers, &run->workspace,
                                    &emission, error));
@@ -148,6 +150,33 @@ static bool touches_bounds(const extraction *run, const hewn_triangles *triangle
             return true;
     }
     return false;
+}
+
+/* Merges what the tolerance allows, on the host. */
+static hewn_result collapse(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface,
+                            const mapped_mesh *mesh, const hewn_dual_hermite *kept, hewn_triangles *out,
+                            hewn_error *error)
+{
+    hewn_dual_reading reading;
+    hewn_adaptive_stats merged;
+    hewn_extract_stats *stats = run->stats;
+    double start = hewn_clock_now();
+    HEWN_TRY(hewn_dual_read(run->extractor, &run->grid, bricks, surface, kept, mesh->buffers, &run->workspace, &reading,
+                            error));
+    double read = hewn_clock_now();
+    hewn_result result = stage(run, "read_back", start, read, 0.85, error);
+    if (result == HEWN_OK)
+        result =
+            hewn_adaptive_collapse(&reading.surface, run->desc->adaptive, run->desc->progress, out, &merged, error);
+    hewn_dual_reading_clear(&reading);
+    if (result != HEWN_OK)
+        return result;
+    stats->uniform_vertices = surface->vertex_count;
+    stats->uniform_triangles = surface->triangle_count;
+    stats->octree_merges = merged.octree_merges;
+    stats->pair_merges = merged.pair_merges;
+    stats->max_residual = NAN; /* vertices have moved */
+    return stage(run, "collapse", read, hewn_clock_now(), 1, error);
 }
 
 static hewn_result classify(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, hewn_error *error)
@@ -180,20 +209,23 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     if (!mesh)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a mesh");
     mesh->device = run->extractor->device;
-    hewn_result result = emit_into(run, &bricks, &surface, mesh, error);
+    hewn_dual_hermite kept;
+    hewn_result result = emit_into(run, &bricks, &surface, mesh, &kept, error);
     double extracted = hewn_clock_now();
     if (result == HEWN_OK)
-        result = stage(run, "extract", evaluated, extracted, 0.9, error);
-    if (result == HEWN_OK)
+        result = stage(run, "extract", evaluated, extracted, 0.8, error);
+    bool merge = run->desc->adaptive > 0;
+    if (result == HEWN_OK && merge)
+        result = collapse(run, &bricks, &surface, mesh, &kept, out, error);
+    else if (result == HEWN_OK)
         result = hand_over(mesh, &surface, out, error);
-    if (result != HEWN_OK) {
+    if (result != HEWN_OK || merge)
         release_mapped(mesh);
+    if (result != HEWN_OK)
         return result;
-    }
-    out->paired = hewn_method_is_dual(run->method);
     if (run->desc->open)
         run->stats->left_bounds = touches_bounds(run, out);
-    return stage(run, "read_back", extracted, hewn_clock_now(), 1, error);
+    return merge ? HEWN_OK : stage(run, "read_back", extracted, hewn_clock_now(), 1, error);
 }
 
 static hewn_result prepare(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_method method,
@@ -204,6 +236,10 @@ static hewn_result prepare(hewn_extractor *extractor, const hewn_extract_desc *d
     if (desc->quads && !hewn_method_is_dual(method))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the method %s makes no quads: its vertices lie on grid edges",
                          hewn_method_name(method));
+    if (!(desc->adaptive >= 0) || !isfinite(desc->adaptive))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", desc->adaptive);
+    if (desc->adaptive > 0 && (method != HEWN_METHOD_DC || desc->quads))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "only the triangles of dc can be merged to a tolerance");
     if (method == HEWN_METHOD_MC33)
         return hewn_mc33_prepare(extractor, error);
     return hewn_method_is_dual(method) ? hewn_dual_prepare(extractor, method, error) : HEWN_OK;
@@ -221,6 +257,7 @@ hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *des
     *out = (hewn_triangles){0};
     HEWN_TRY(hewn_grid_lay(desc, &run.grid, &run.stats->bounds, error));
     HEWN_TRY(prepare(extractor, desc, run.method, error));
+    HEWN_TRY(stage(&run, "prepare", run.begin, hewn_clock_now(), 0.02, error));
     for (int axis = 0; axis < 3; axis++)
         run.stats->cells[axis] = run.grid.cells[axis] - 2 * run.grid.rim;
     run.stats->cell = desc->cell != 0

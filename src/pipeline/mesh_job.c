@@ -35,13 +35,20 @@ static double seconds_since(double began)
 
 /* --- before any work --------------------------------------------------------------------------------------------- */
 
-static hewn_result check_quads(const mesh_job *job, hewn_error *error)
+static hewn_result check_faces(const mesh_job *job, hewn_error *error)
 {
-    if (!hewn_method_is_dual(job->desc->method))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "the method %s makes triangles, not quads; nets and dc make quads",
-                         hewn_method_name(job->desc->method));
-    if (!hewn_mesh_format_has_polygons(job->format))
+    const hewn_mesh_job_desc *desc = job->desc;
+    const char *method = hewn_method_name(desc->method);
+    if (!isfinite(desc->adaptive) || desc->adaptive < 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", desc->adaptive);
+    if (desc->adaptive > 0 && desc->quads)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "merged faces are triangles, not quads");
+    if (desc->adaptive > 0 && (!method || strcmp(method, hewn_method_name(HEWN_METHOD_DC)) != 0))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "only the triangles of dc can be merged, not those of %s",
+                         method);
+    if (desc->quads && !hewn_method_is_dual(desc->method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the method %s makes triangles; nets and dc make quads", method);
+    if (desc->quads && !hewn_mesh_format_has_polygons(job->format))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
                          "%s files hold triangles only; quads can go to .obj, .off and .ply",
                          hewn_mesh_format_name(job->format));
@@ -63,8 +70,7 @@ static hewn_result check(mesh_job *job, hewn_error *error)
     if (desc->bounds)
         HEWN_TRY(hewn_domain_check(desc->bounds, error));
     HEWN_TRY(hewn_output_format(desc->output, desc->format, &job->format, error));
-    if (desc->quads)
-        HEWN_TRY(check_quads(job, error));
+    HEWN_TRY(check_faces(job, error));
     if (desc->report && strcmp(desc->report, desc->output) == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
                          strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
@@ -97,6 +103,7 @@ static hewn_result describe_request(mesh_job *job, hewn_error *error)
     report->format = job->format;
     report->open = desc->open;
     report->quads = desc->quads;
+    report->adaptive = desc->adaptive;
     report->threads = desc->threads;
     report->resolution = desc->resolution || desc->cell > 0 ? desc->resolution : HEWN_DEFAULT_RESOLUTION;
     return HEWN_OK;
@@ -139,6 +146,7 @@ static hewn_result extract(mesh_job *job, const hewn_box *bounds, hewn_error *er
         .method = desc->method,
         .open = desc->open,
         .quads = desc->quads,
+        .adaptive = desc->adaptive,
         .progress = desc->progress,
     };
     hewn_extract_stats *stats = &job->report->extraction;

@@ -116,6 +116,10 @@ static void print_request(hewn_json *json, const hewn_report *report)
     hewn_json_string(json, "method", hewn_method_name(report->method));
     hewn_json_bool(json, "open", report->open);
     hewn_json_bool(json, "quads", report->quads);
+    if (report->adaptive > 0)
+        hewn_json_number(json, "adaptive", report->adaptive);
+    else
+        hewn_json_string(json, "adaptive", NULL);
     if (report->resolution)
         hewn_json_unsigned(json, "resolution", report->resolution);
     else
@@ -148,6 +152,14 @@ static void print_extraction(hewn_json *json, const hewn_report *report)
         hewn_json_unsigned(json, "corner_vertices", stats->corner_vertices);
         hewn_json_unsigned(json, "planes_found", stats->planes_found);
         hewn_json_unsigned(json, "lost", stats->features_lost);
+        hewn_json_end_object(json);
+    }
+    if (report->adaptive > 0) {
+        hewn_json_object(json, "merged");
+        hewn_json_unsigned(json, "uniform_vertices", stats->uniform_vertices);
+        hewn_json_unsigned(json, "uniform_faces", stats->uniform_triangles);
+        hewn_json_unsigned(json, "octree_merges", stats->octree_merges);
+        hewn_json_unsigned(json, "pair_merges", stats->pair_merges);
         hewn_json_end_object(json);
     }
     hewn_json_unsigned(json, "validation_messages", report->validation_messages);
