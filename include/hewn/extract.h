@@ -60,6 +60,7 @@ typedef struct hewn_extract_stats {
     uint64_t cap_vertices;  /* that lie on the bounds because the surface was cut there */
     bool left_bounds;       /* the surface reaches the bounds */
     float max_residual;     /* see hewn_certificate */
+    uint64_t fans; /* by the dual methods: quads that became four triangles, so that they meet no others */
     /* By dual contouring: */
     uint64_t edge_vertices;   /* on sharp edges */
     uint64_t corner_vertices; /* at corners */

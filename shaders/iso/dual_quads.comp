@@ -6,7 +6,6 @@
 
 #include "iso/dual_loops.h"
 #include "iso/dual_record.h"
-#include "iso/dual_table.h"
 #include "iso/grid.h"
 #include "iso/quad.h"
 #include "shared/invocation.h"
@@ -20,32 +19,26 @@ layout(push_constant, scalar) uniform Push
 /* The vertex of the loop that passes an edge of a cell. */
 uint loop_vertex(uint slot, uvec3 at, uint edge)
 {
-    uint owner = owner_slot(push.links, slot, at), number = sample_number(at), bit = number & 31u;
-    uint words = loop_words(owner, number), before = (1u << bit) - 1u;
+    uint number = sample_number(at), bit = number & 31u, before = (1u << bit) - 1u;
+    uint words = loop_words(owner_slot(push.links, slot, at), number);
     uint cells = push.loops.at[words + HEWN_DUAL_CELLS], low = push.loops.at[words + HEWN_DUAL_LOW];
     uint high = push.loops.at[words + HEWN_DUAL_HIGH];
     uint vertex = push.loops.at[words + HEWN_DUAL_FIRST];
     vertex += uint(bitCount(cells & before) + bitCount(low & before) + 2 * bitCount(high & before));
-    /* Few cells have several loops; a loop, since a CPU device jumps over that, but takes all arms of a branch. */
-    for (uint several = (low | high) >> bit & 1u; several != 0u; several = 0u) {
-        bool turned = (push.loops.at[words + HEWN_DUAL_TURNED] >> bit & 1u) != 0u;
-        uint pattern = load_pattern(push.links, push.signs, owner, at & 7u);
-        vertex += entry_edge_loop(dual_entry(pattern, turned), edge);
-    }
+    uint last = vertex + (low >> bit & 1u) + 2u * (high >> bit & 1u);
+    while (vertex < last && (push.passed.at[vertex] >> edge & 1u) == 0u)
+        vertex++;
     return vertex;
 }
 
 /* The edge along `axis` of the cell at `at` that is far along both other axes is the quad's; its vertices in order. */
-void load_corners(uint slot, uvec3 at, uint axis, out uint corners[4], out uvec3 start)
+void load_corners(uint slot, uvec3 at, uint axis, bool inside, out uint corners[4], out uvec3 start)
 {
     uint u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
     uvec3 step_u = uvec3(0u), step_v = uvec3(0u);
     step_u[u] = 1u;
     step_v[v] = 1u;
     start = at + step_u + step_v;
-    uint number = sample_number(start);
-    uint word = sign_word(push.signs, owner_slot(push.links, slot, start), number >> 5);
-    bool inside = (word >> (number & 31u) & 1u) != 0u;
     for (uint i = 0u; i < 4u; i++) {
         /* (axis, u, v) is right-handed: from u to v is counter-clockwise seen from the edge's end, which is outside
          * where the edge starts inside. */
@@ -64,12 +57,10 @@ void main()
         return;
     uint slot = push.indices.at[6u * quad], record = push.indices.at[6u * quad + 1u];
     uvec3 at = uvec3(record, record >> 3, record >> 6) & 7u;
-    uint axis = record >> 9, corners[4];
+    uint axis = record >> 9 & 3u, corners[4];
     uvec3 start;
-    load_corners(slot, at, axis, corners, start);
+    load_corners(slot, at, axis, record >> 11 != 0u, corners, start);
     uint crossing = edge_vertex(push.links, push.edges, slot, at, 4u * axis + 3u);
-    if (push.named != 0u)
-        push.crossings.at[quad] = crossing;
     start += 8u * unpack_brick(push.bricks.at[slot]);
     vec3 places[4], low;
     for (uint i = 0u; i < 4u; i++)
@@ -77,7 +68,16 @@ void main()
     for (uint i = 0u; i < 3u; i++)
         low[i] = sample_coordinate(push.grid, i, start[i]);
     float high = sample_coordinate(push.grid, axis, start[axis] + 1u);
-    uint turn = quad_cut(places, low, high, push.points.at[3u * crossing + axis], axis) & 1u;
+    float surface = push.points.at[3u * crossing + axis];
+    uint cut = quad_cut(places, low, high, surface, axis), turn = cut & 1u;
+    bool fan = push.keep == HEWN_KEEP_FANS && (cut & QUAD_FAN) != 0u;
+    if (push.keep != HEWN_KEEP_NONE)
+        push.crossings.at[quad] = fan || push.keep == HEWN_KEEP_ALL ? crossing : HEWN_NO_FAN;
+    if (fan) {
+        low[axis] = fan_height(low[axis], high, surface);
+        for (uint i = 0u; i < 3u; i++)
+            push.points.at[3u * crossing + i] = low[i];
+    }
     const uint order[6] = uint[6](0u, 1u, 2u, 0u, 2u, 3u);
     for (uint i = 0u; i < 6u; i++)
         push.indices.at[6u * quad + i] = corners[order[i] + turn & 3u];

@@ -29,17 +29,20 @@ uint spread_loops(uint slot, uint word, uvec4 lower, uvec4 upper, uint vertex)
         for (uint loop = 0u; loop < count; loop++) {
             push.positions.at[3u * vertex] = slot;
             push.positions.at[3u * vertex + 1u] = number + 512u * entry_loop_edges(entry, loop);
+            push.passed.at[vertex] = entry_loop_edges(entry, loop);
             vertex++;
         }
     }
     return vertex;
 }
 
-uint spread_quads(uint slot, uint word, uint axis, uint mask, uint quad)
+/* `inside`: signs of the samples where the edges start. */
+uint spread_quads(uint slot, uint word, uint axis, uint mask, uint inside, uint quad)
 {
     while (mask != 0u) {
         push.indices.at[6u * quad] = slot;
-        push.indices.at[6u * quad + 1u] = 32u * word + uint(findLSB(mask)) + 512u * axis;
+        uint bit = uint(findLSB(mask));
+        push.indices.at[6u * quad + 1u] = 32u * word + bit + 512u * axis + 2048u * (inside >> bit & 1u);
         mask &= mask - 1u;
         quad++;
     }
@@ -64,9 +67,9 @@ void main()
             uint word = 2u * z + half_of;
             uvec4 under = lower.rows[half_of], over = upper.rows[half_of];
             vertex = spread_loops(slot, word, under, over, vertex);
-            uvec3 masks = own_quads(under, over, first, word, cells);
+            uvec3 masks = own_quads(under, over, first, word, cells), inside = uvec3(over.zy, under.w);
             for (uint axis = 0u; axis < 3u; axis++)
-                quad = spread_quads(slot, word, axis, masks[axis], quad);
+                quad = spread_quads(slot, word, axis, masks[axis], inside[axis], quad);
         }
         lower = upper;
     }

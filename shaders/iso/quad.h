@@ -62,4 +62,12 @@ uint quad_cut(vec3 corners[4], vec3 low, float high, float surface, uint axis)
     return (other < one ? 1u : 0u) | (min(one, other) >= QUAD_LEAVES ? QUAD_FAN : 0u);
 }
 
+/* Where on the edge a fan has its middle: where the surface crosses it, but no nearer to the ends than vertices on edges
+ * come. Where the surface is cut at the bounds the middle is an end, and no other edge has that. */
+float fan_height(float low, float high, float surface)
+{
+    float off = 1.25 / 4096.0 * (high - low);
+    return surface == low || surface == high ? surface : clamp(surface, low + off, high - off);
+}
+
 #endif

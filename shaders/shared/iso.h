@@ -252,7 +252,9 @@ struct hewn_dual_spread_push {
     HEWN_UINTS quad_bases;
     HEWN_UINTS points;    /* out: as `vertices` of hewn_spread_push */
     HEWN_UINTS positions; /* out: slot, sample + 512 * mask of the loop's edges */
-    HEWN_UINTS indices;   /* out: slot, sample + 512 * axis in the first two of each quad's six words */
+    HEWN_UINTS passed;    /* out, a vertex: that mask again, which stays */
+    HEWN_UINTS indices;   /* out: slot, sample + 512 * axis + 2048 * whether the edge starts inside in the first two of
+                             each quad's six words */
 };
 
 struct hewn_dual_vertex_push {
@@ -272,16 +274,36 @@ struct hewn_dual_vertex_push {
 struct hewn_dual_quad_push {
     HEWN_GRID grid;
     HEWN_UINT count;
-    HEWN_UINT named; /* 1: crossings are wanted */
+    HEWN_UINT keep; /* HEWN_KEEP_ */
     HEWN_UINTS bricks;
     HEWN_UINTS links;
-    HEWN_UINTS signs;
     HEWN_UINTS edges;
     HEWN_UINTS loops;
+    HEWN_UINTS passed;
     HEWN_FLOATS points;
     HEWN_FLOATS positions;
     HEWN_UINTS indices;   /* in: records; out: two triangles a quad */
     HEWN_UINTS crossings; /* out, a quad: number of the crossing on its edge */
+};
+
+#define HEWN_KEEP_NONE 0u
+#define HEWN_KEEP_ALL 1u
+#define HEWN_KEEP_FANS 2u /* only where the quad is to be a fan, and the point is moved to the fan's middle */
+#define HEWN_NO_FAN 0xFFFFFFFFu
+
+/* Fans in the place of quads, see dual_fans.comp. */
+struct hewn_dual_fan_push {
+    HEWN_UINT count;    /* quads */
+    HEWN_UINT makes;    /* 0: ranks become marks; 1: they are sums, and fans are made */
+    HEWN_UINT vertices; /* before those of fans */
+    HEWN_UINT pad;
+    HEWN_UINTS crossings;
+    HEWN_UINTS ranks;
+    HEWN_FLOATS points;
+    HEWN_FLOATS point_normals;
+    HEWN_FLOATS positions;
+    HEWN_FLOATS normals;
+    HEWN_UINTS indices;
 };
 
 #endif

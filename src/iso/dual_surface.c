@@ -16,6 +16,7 @@ HEWN_SHADER(dual_link)
 HEWN_SHADER(dual_classify)
 HEWN_SHADER(dual_spread)
 HEWN_SHADER(dual_quads)
+HEWN_SHADER(dual_fans)
 #undef HEWN_SHADER
 
 /* --- programs ----------------------------------------------------------------------------------------------------- */
@@ -46,8 +47,10 @@ static hewn_result create_fixed(hewn_extractor *extractor, hewn_error *error)
          sizeof(struct hewn_dual_classify_push), true, &own->classify},
         {"dual_spread", hewn_shader_dual_spread, hewn_shader_dual_spread_size, sizeof(struct hewn_dual_spread_push),
          true, &own->spread},
-        {"dual_quads", hewn_shader_dual_quads, hewn_shader_dual_quads_size, sizeof(struct hewn_dual_quad_push), true,
+        {"dual_quads", hewn_shader_dual_quads, hewn_shader_dual_quads_size, sizeof(struct hewn_dual_quad_push), false,
          &own->quads},
+        {"dual_fans", hewn_shader_dual_fans, hewn_shader_dual_fans_size, sizeof(struct hewn_dual_fan_push), false,
+         &own->fans},
     };
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
         hewn_program_desc desc = {.name = kernels[i].name,
@@ -79,7 +82,7 @@ static hewn_result create_vertices(hewn_extractor *extractor, hewn_method method
 hewn_result hewn_dual_prepare(hewn_extractor *extractor, hewn_method method, hewn_error *error)
 {
     hewn_result result = HEWN_OK;
-    if (!extractor->dual.quads) {
+    if (!extractor->dual.fans) {
         result = create_table(extractor, error);
         if (result == HEWN_OK)
             result = create_fixed(extractor, error);
@@ -94,7 +97,8 @@ hewn_result hewn_dual_prepare(hewn_extractor *extractor, hewn_method method, hew
 void hewn_dual_clear(hewn_extractor *extractor)
 {
     hewn_dual_programs *own = &extractor->dual;
-    hewn_program **programs[] = {&own->link, &own->classify, &own->spread, &own->quads, &own->nets, &own->dc};
+    hewn_program **programs[] = {&own->link, &own->classify, &own->spread, &own->quads,
+                                 &own->fans, &own->nets,     &own->dc};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         hewn_program_destroy(extractor->device, programs[i]);
     hewn_buffer_destroy(extractor->device, &own->table);
@@ -201,11 +205,12 @@ typedef struct emission {
     const hewn_surface *surface;
     const hewn_buffer *buffers;      /* positions, normals, indices */
     hewn_buffer *points, *normals;   /* of crossings */
+    hewn_buffer *passed;             /* edges that each vertex's loop passes */
     hewn_buffer *summary, *results;  /* the mesh's; behind it that of the crossings */
     hewn_buffer *records, *crossing; /* of vertices, of quads: where they are kept */
 } emission;
 
-static hewn_result take_emission(emission *run, bool keep, hewn_workspace *workspace, hewn_error *error)
+static hewn_result take_emission(emission *run, uint32_t keep, hewn_workspace *workspace, hewn_error *error)
 {
     uint64_t points = 12 * run->surface->crossing_count, quads = run->surface->triangle_count / 2;
     uint64_t summary = (uint64_t)2 * 4 * HEWN_SUMMARY_WORDS;
@@ -216,9 +221,10 @@ static hewn_result take_emission(emission *run, bool keep, hewn_workspace *works
     } wanted[] = {
         {"crossings", points, &run->points},
         {"normals of crossings", points, &run->normals},
+        {"edges of loops", 4 * run->surface->vertex_count, &run->passed},
         {"summary", summary, &run->summary},
-        {"records of vertices", keep ? run->buffers[0].size : 4, &run->records},
-        {"crossings of quads", keep ? 4 * quads : 4, &run->crossing},
+        {"records of vertices", keep == HEWN_KEEP_ALL ? run->buffers[0].size : 4, &run->records},
+        {"crossings of quads", keep != HEWN_KEEP_NONE ? 4 * quads : 4, &run->crossing},
     };
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
         HEWN_TRY(hewn_workspace_take(workspace, wanted[i].what, wanted[i].bytes, HEWN_BUFFER_DEVICE, wanted[i].place,
@@ -240,6 +246,7 @@ static void record_spread(const emission *run, hewn_commands *commands)
                                          .quad_bases = surface->triangle_bases->address,
                                          .points = run->points->address,
                                          .positions = run->buffers[0].address,
+                                         .passed = run->passed->address,
                                          .indices = run->buffers[2].address};
     memcpy(push.cells, run->grid->cells, sizeof push.cells);
     hewn_commands_dispatch(commands, run->extractor->dual.spread, &push, &run->extractor->dual.table,
@@ -274,24 +281,23 @@ static void record_vertices(const emission *run, hewn_method method, hewn_comman
                            hewn_groups_for(surface->vertex_count, 64));
 }
 
-static void record_quads(const emission *run, bool keep, hewn_commands *commands)
+static void record_quads(const emission *run, uint32_t keep, hewn_commands *commands)
 {
     const hewn_surface *surface = run->surface;
     uint64_t quads = surface->triangle_count / 2;
     struct hewn_dual_quad_push push = {.grid = *run->grid,
                                        .count = (uint32_t)quads,
-                                       .named = keep,
+                                       .keep = keep,
                                        .bricks = run->bricks->list->address,
                                        .links = surface->links->address,
-                                       .signs = surface->signs->address,
                                        .edges = surface->edges->address,
                                        .loops = surface->loops->address,
+                                       .passed = run->passed->address,
                                        .points = run->points->address,
                                        .positions = run->buffers[0].address,
                                        .indices = run->buffers[2].address,
                                        .crossings = run->crossing->address};
-    hewn_commands_dispatch(commands, run->extractor->dual.quads, &push, &run->extractor->dual.table,
-                           hewn_groups_for(quads, 64));
+    hewn_commands_dispatch(commands, run->extractor->dual.quads, &push, NULL, hewn_groups_for(quads, 64));
 }
 
 static void read_summary(const uint32_t *words, hewn_emission *out)
@@ -307,22 +313,23 @@ static void read_summary(const uint32_t *words, hewn_emission *out)
 
 hewn_result hewn_dual_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                            const hewn_surface *surface, hewn_method method, const hewn_buffer buffers[3],
-                           hewn_workspace *workspace, hewn_dual_hermite *kept, hewn_emission *out, hewn_error *error)
+                           hewn_workspace *workspace, uint32_t keep, hewn_dual_hermite *kept, hewn_emission *out,
+                           hewn_error *error)
 {
     emission run = {.extractor = extractor, .grid = grid, .bricks = bricks, .surface = surface, .buffers = buffers};
     hewn_commands *commands;
-    HEWN_TRY(take_emission(&run, kept != NULL, workspace, error));
+    HEWN_TRY(take_emission(&run, keep, workspace, error));
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, run.summary, 0, run.summary->size, 0);
     record_spread(&run, commands);
-    if (kept)
+    if (keep == HEWN_KEEP_ALL)
         hewn_commands_copy(commands, &buffers[0], 0, run.records, 0, buffers[0].size);
     record_vertices(&run, method, commands);
-    record_quads(&run, kept != NULL, commands);
+    record_quads(&run, keep, commands);
     hewn_commands_copy(commands, run.summary, 0, run.results, 0, run.summary->size);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
     read_summary(run.results->mapped, out);
-    if (kept)
+    if (keep != HEWN_KEEP_NONE)
         *kept = (hewn_dual_hermite){run.points, run.normals, run.records, run.crossing};
     return HEWN_OK;
 }

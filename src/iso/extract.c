@@ -104,7 +104,7 @@ static hewn_result hand_over(mapped_mesh *mesh, const hewn_surface *surface, hew
                             .positions = mesh->buffers[0].mapped,
                             .normals = mesh->buffers[1].mapped,
                             .indices = mesh->buffers[2].mapped,
-                            .paired = surface->loops,
+                            .paired = surface->loops && surface->fan_count == 0,
                             .release = release_mapped,
                             .owner = mesh};
 
@@ -121,7 +121,20 @@ static void note_emission(hewn_extract_stats *stats, const hewn_emission *emissi
     stats->features_lost = emission->features_lost;
 }
 
-static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface, mapped_mesh *mesh,
+/* Merging wants quads, and takes what they were made of. */
+static hewn_result emit_dual(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, mapped_mesh *mesh,
+                             hewn_dual_hermite *kept, hewn_emission *emission, hewn_error *error)
+{
+    uint32_t keep = run->desc->adaptive > 0 ? HEWN_KEEP_ALL : run->desc->quads ? HEWN_KEEP_NONE : HEWN_KEEP_FANS;
+    HEWN_TRY(hewn_dual_emit(run->extractor, &run->grid, bricks, surface, run->method, mesh->buffers, &run->workspace,
+                            keep, kept, emission, error));
+    if (keep == HEWN_KEEP_FANS)
+        HEWN_TRY(hewn_dual_add_fans(run->extractor, kept, surface, mesh->buffers, &run->workspace, error));
+    run->stats->fans = surface->fan_count;
+    return HEWN_OK;
+}
+
+static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, mapped_mesh *mesh,
                              hewn_dual_hermite *kept, hewn_error *error)
 {
     static const char *const what[3] = {"positions", "normals", "indices"};
@@ -131,8 +144,7 @@ static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, const h
             hewn_buffer_create(mesh->device, what[i], 12 * items[i], HEWN_BUFFER_DEVICE, &mesh->buffers[i], error));
     hewn_emission emission = {0};
     if (hewn_method_is_dual(run->method))
-        HEWN_TRY(hewn_dual_emit(run->extractor, &run->grid, bricks, surface, run->method, mesh->buffers,
-                                &run->workspace, run->desc->adaptive > 0 ? kept : NULL, &emission, error));
+        HEWN_TRY(emit_dual(run, bricks, surface, mesh, kept, &emission, error));
     else
         HEWN_TRY(hewn_surface_emit(run->extractor, &run->grid, bricks, surface, mesh->buffers, &run->workspace,
                                    &emission, error));

@@ -18,7 +18,7 @@ typedef struct hewn_mc33_programs {
 /* What only the methods with vertices in cells need, made when one is first asked for. */
 typedef struct hewn_dual_programs {
     hewn_buffer table; /* hewn_dual_table */
-    hewn_program *link, *classify, *spread, *quads;
+    hewn_program *link, *classify, *spread, *quads, *fans;
     hewn_program *nets, *dc; /* vertices by each method */
 } hewn_dual_programs;
 
@@ -69,6 +69,7 @@ typedef struct hewn_surface {
     uint64_t vertex_count;   /* of the mesh: on those edges and in cells, or by the dual methods in cells only */
     uint64_t triangle_count;
     uint32_t centre_count; /* vertices in cells: the last ones */
+    uint32_t fan_count;    /* quads that became fans */
     double sign_seconds;   /* of the seconds that the call took, those that went into the field's signs */
     const hewn_buffer *links, *signs, *edges, *vertex_bases, *triangle_bases;
     const hewn_buffer *centre_bases, *ranks, *asked;   /* of the trilinear interpolant's topology, else NULL */
@@ -130,11 +131,17 @@ typedef struct hewn_dual_hermite {
     const hewn_buffer *crossings;        /* a quad: number of the crossing on its edge */
 } hewn_dual_hermite;
 
-/* Takes the place of hewn_surface_emit(): writes vertices and quads, two triangles each, into the three buffers. `kept`
- * may be NULL. */
+/* Takes the place of hewn_surface_emit(): writes vertices and quads, two triangles each, into the three buffers. `keep`
+ * is one of HEWN_KEEP_; `kept` may be NULL where it is HEWN_KEEP_NONE. */
 hewn_result hewn_dual_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                            const hewn_surface *surface, hewn_method method, const hewn_buffer buffers[3],
-                           hewn_workspace *workspace, hewn_dual_hermite *kept, hewn_emission *out, hewn_error *error);
+                           hewn_workspace *workspace, uint32_t keep, hewn_dual_hermite *kept, hewn_emission *out,
+                           hewn_error *error);
+
+/* Makes fans of quads that two triangles cannot cut without perhaps meeting others, if the emission kept what that
+ * needs (HEWN_KEEP_FANS). Where there are any, the buffers are made longer and the surface's counts greater. */
+hewn_result hewn_dual_add_fans(const hewn_extractor *extractor, const hewn_dual_hermite *kept, hewn_surface *surface,
+                               hewn_buffer buffers[3], hewn_workspace *workspace, hewn_error *error);
 
 /* That surface in host memory: arrays of its own, and views of buffers that live as long as the workspace and the
  * buffers do. Zero is the empty one. */

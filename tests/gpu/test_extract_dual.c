@@ -48,8 +48,11 @@ static void free_subject(subject *made)
 static hewn_triangles extract(const subject *made, const hewn_extract_desc *desc, hewn_extract_stats *stats)
 {
     hewn_triangles mesh;
-    GPU_TEST_TRY(hewn_extract(made->extractor, desc, &mesh, stats, &error));
-    assert_true(mesh.paired);
+    hewn_extract_stats own;
+    GPU_TEST_TRY(hewn_extract(made->extractor, desc, &mesh, &own, &error));
+    assert_true(mesh.paired == (own.fans == 0) && (own.fans == 0 || !desc->quads));
+    if (stats)
+        *stats = own;
     return mesh;
 }
 
@@ -179,8 +182,8 @@ static staged run_stages(const subject *made, const hewn_extract_desc *desc, con
     uint64_t items[3] = {surface.vertex_count, surface.vertex_count, surface.triangle_count};
     for (int i = 0; i < 3; i++)
         GPU_TEST_TRY(hewn_buffer_create(device, "mesh", 12 * items[i], HEWN_BUFFER_DEVICE, &run.buffers[i], &error));
-    GPU_TEST_TRY(hewn_dual_emit(extractor, grid, &bricks, &surface, desc->method, run.buffers, &run.workspace, &kept,
-                                &emission, &error));
+    GPU_TEST_TRY(hewn_dual_emit(extractor, grid, &bricks, &surface, desc->method, run.buffers, &run.workspace,
+                                HEWN_KEEP_ALL, &kept, &emission, &error));
     GPU_TEST_TRY(
         hewn_dual_read(extractor, grid, &bricks, &surface, &kept, run.buffers, &run.workspace, &run.reading, &error));
     return run;
@@ -244,15 +247,19 @@ static uint32_t check_twin(const subject *made, hewn_method method, const uint32
     compare_surfaces(&grid, &run.reading.surface, &twin);
     check_places(&grid, &run.reading.surface, method);
     check_crossings(&grid, &run.reading.surface);
-    hewn_triangles mesh = extract(made, &desc, NULL);
-    assert_int_equal(mesh.vertex_count, twin.vertex_count);
-    assert_int_equal(mesh.triangle_count, 2 * twin.quad_count);
-    assert_memory_equal(mesh.positions, run.reading.surface.positions, 12 * mesh.vertex_count);
-    hewn_certificate certificate = certify(&mesh);
-    assert_true(certificate.manifold && certificate.oriented);
-    assert_true(open || (certificate.closed && certificate.volume > 0));
+    for (int quads = 0; quads < 2; quads++) { /* with fans and without */
+        hewn_extract_stats stats;
+        desc.quads = quads;
+        hewn_triangles mesh = extract(made, &desc, &stats);
+        assert_int_equal(mesh.vertex_count, twin.vertex_count + stats.fans);
+        assert_int_equal(mesh.triangle_count, 2 * (twin.quad_count + stats.fans));
+        assert_memory_equal(mesh.positions, run.reading.surface.positions, 12 * twin.vertex_count);
+        hewn_certificate certificate = certify(&mesh);
+        assert_true(certificate.manifold && certificate.oriented);
+        assert_true(open || (certificate.closed && certificate.volume > 0));
+        hewn_triangles_destroy(&mesh);
+    }
     uint32_t flips = twin.flips;
-    hewn_triangles_destroy(&mesh);
     free_stages(&run);
     oracle_dual_free(&twin);
     free(inside);
@@ -307,7 +314,7 @@ static void test_random_trees_are_manifolds(void **state)
             hewn_certificate certificate = certify(&mesh);
             assert_true(certificate.closed && certificate.manifold && certificate.oriented && certificate.volume > 0);
             hewn_triangles_destroy(&mesh);
-            desc.open = true;
+            desc.open = desc.quads = true; /* the middle of a fan may lie on the bounds too */
             mesh = extract(&made, &desc, NULL);
             check_border(&mesh);
             hewn_triangles_destroy(&mesh);
@@ -336,7 +343,7 @@ static void test_bounds_cut_or_leave_open(void **state)
         assert_true(stats.left_bounds && stats.cap_vertices > 0 && stats.cap_vertices < mesh.vertex_count);
         assert_true(certificate.bounds.lo[0] == -1 && certificate.bounds.lo[1] == -1);
         hewn_triangles_destroy(&mesh);
-        desc.open = true;
+        desc.open = desc.quads = true;
         mesh = extract(&made, &desc, &stats);
         certificate = certify(&mesh);
         assert_true(stats.left_bounds && stats.cap_vertices == 0 && stats.cells[0] == 20 && stats.cell == 0.1);

@@ -180,15 +180,19 @@ static void test_dual_kernels(void **state)
           A(hewn_dual_spread_push, signs), A(hewn_dual_spread_push, edges), A(hewn_dual_spread_push, loops),
           A(hewn_dual_spread_push, crossing_bases), A(hewn_dual_spread_push, vertex_bases),
           A(hewn_dual_spread_push, quad_bases), A(hewn_dual_spread_push, points), A(hewn_dual_spread_push, positions),
-          A(hewn_dual_spread_push, indices));
+          A(hewn_dual_spread_push, passed), A(hewn_dual_spread_push, indices));
     CHECK(hewn_dual_vertex_push, GRID(hewn_dual_vertex_push), N(hewn_dual_vertex_push, count),
           A(hewn_dual_vertex_push, bricks), A(hewn_dual_vertex_push, links), A(hewn_dual_vertex_push, edges),
           A(hewn_dual_vertex_push, points), A(hewn_dual_vertex_push, point_normals),
           A(hewn_dual_vertex_push, positions), A(hewn_dual_vertex_push, normals), A(hewn_dual_vertex_push, summary));
-    CHECK(hewn_dual_quad_push, GRID(hewn_dual_quad_push), N(hewn_dual_quad_push, count), N(hewn_dual_quad_push, named),
-          A(hewn_dual_quad_push, bricks), A(hewn_dual_quad_push, links), A(hewn_dual_quad_push, signs),
+    CHECK(hewn_dual_quad_push, GRID(hewn_dual_quad_push), N(hewn_dual_quad_push, count), N(hewn_dual_quad_push, keep),
+          A(hewn_dual_quad_push, bricks), A(hewn_dual_quad_push, links), A(hewn_dual_quad_push, passed),
           A(hewn_dual_quad_push, edges), A(hewn_dual_quad_push, loops), A(hewn_dual_quad_push, points),
           A(hewn_dual_quad_push, positions), A(hewn_dual_quad_push, indices), A(hewn_dual_quad_push, crossings));
+    CHECK(hewn_dual_fan_push, N(hewn_dual_fan_push, count), N(hewn_dual_fan_push, makes),
+          N(hewn_dual_fan_push, vertices), A(hewn_dual_fan_push, crossings), A(hewn_dual_fan_push, ranks),
+          A(hewn_dual_fan_push, points), A(hewn_dual_fan_push, point_normals), A(hewn_dual_fan_push, positions),
+          A(hewn_dual_fan_push, normals), A(hewn_dual_fan_push, indices));
 }
 
 int main(void)
