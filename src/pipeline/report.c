@@ -146,6 +146,8 @@ static void print_extraction(hewn_json *json, const hewn_report *report)
     hewn_json_unsigned(json, "cap_vertices", stats->cap_vertices);
     hewn_json_unsigned(json, "cells_visited", stats->cells_visited);
     hewn_json_unsigned(json, "bricks_active", stats->bricks_active);
+    if (hewn_method_is_dual(report->method))
+        hewn_json_unsigned(json, "fans", stats->fans);
     if (report->method == HEWN_METHOD_DC) {
         hewn_json_object(json, "features");
         hewn_json_unsigned(json, "edge_vertices", stats->edge_vertices);
