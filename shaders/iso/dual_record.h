@@ -4,12 +4,13 @@
 
 #include "iso/edge_vertex.h"
 
-/* A vertex stands for a loop of a cell: its brick's slot, the cell's place in the brick, and the edges that the loop
- * passes, a bit each. edge_vertex(links, edges, slot, at, edge) numbers the crossing on such an edge. */
+/* A vertex stands for a loop of a cell: its brick's slot, the cell's place in the brick, the edges that the loop passes,
+ * a bit each, and how many loops the cell has. edge_vertex(links, edges, slot, at, edge) numbers the crossing on such an edge. */
 struct DualRecord {
     uint slot;
     uvec3 at;
     uint edges;
+    uint loops;
 };
 
 DualRecord dual_record(Floats positions, uint vertex)
@@ -19,6 +20,7 @@ DualRecord dual_record(Floats positions, uint vertex)
     record.slot = floatBitsToUint(positions.at[3u * vertex]);
     record.at = uvec3(packed, packed >> 3, packed >> 6) & 7u;
     record.edges = packed >> 9;
+    record.loops = floatBitsToUint(positions.at[3u * vertex + 2u]);
     return record;
 }
 

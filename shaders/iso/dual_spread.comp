@@ -29,6 +29,7 @@ uint spread_loops(uint slot, uint word, uvec4 lower, uvec4 upper, uint vertex)
         for (uint loop = 0u; loop < count; loop++) {
             push.positions.at[3u * vertex] = slot;
             push.positions.at[3u * vertex + 1u] = number + 512u * entry_loop_edges(entry, loop);
+            push.positions.at[3u * vertex + 2u] = count;
             push.passed.at[vertex] = entry_loop_edges(entry, loop);
             vertex++;
         }

@@ -101,13 +101,16 @@ void ask_beyond(Cell cell, vec3 at, uint axis)
     }
 }
 
-Placed place_vertex(Cell cell, vec3 usual)
+/* Several loops of one cell get in each other's way where they are not on the surface: then they keep to `narrow`, the
+ * box of their crossings. */
+Placed place_vertex(Cell cell, Cell narrow, bool alone, vec3 usual)
 {
     Placed placed = Placed(vec3(0.0), vec4(0.0, 0.0, 0.0, 3.0e38), 0u, 0u, false, false);
     uint phase = SOLVE, known = qef_count, rounds = 0u, pair = 0u;
     uvec3 sets = uvec3(0u);
+    bool kept_narrow = false;
     vec3 corner = vec3(0.0), aside = vec3(0.0);
-    for (uint step_of = 0u; step_of < 12u && phase != DONE; step_of++) {
+    for (uint step_of = 0u; step_of < 16u && phase != DONE; step_of++) {
         Qef solved;
         uint questions = 1u;
         bool solving = phase == SOLVE || phase == PAIR;
@@ -149,7 +152,7 @@ Placed place_vertex(Cell cell, vec3 usual)
             if (next != SOLVE && solved.rank == 3u && solved.at != solved.best) {
                 corner = solved.best;
                 sets = surfaces_of_planes();
-                next = beyond_face(cell, corner, sets) < 3u ? LEAVE : sets.z != 0u ? PAIR : next;
+                next = alone && !kept_narrow && beyond_face(cell, corner, sets) < 3u ? LEAVE : sets.z != 0u ? PAIR : next;
             }
         } else if (phase == LEAVE) {
             bool same = true;
@@ -176,6 +179,14 @@ Placed place_vertex(Cell cell, vec3 usual)
                 most = max(most, dot(away, away));
             }
         }
+        if (!alone && next > PAIR && phase != SHARP && abs(placed.seen.w) > ON_SURFACE) {
+            kept_narrow = alone = true;
+            cell = narrow;
+            qef_count = known;
+            rounds = pair = 0u;
+            placed.seen.w = 3.0e38;
+            next = SOLVE;
+        }
         phase = next;
     }
     return placed;
@@ -188,7 +199,7 @@ void main()
         return;
     DualRecord record = dual_record(push.positions, vertex);
     Cell cell = cell_of(record);
-    vec3 along = vec3(0.0);
+    vec3 along = vec3(0.0), least = vec3(1.0), most = vec3(0.0);
     float count = 0.0;
     bool capped = false;
     qef_begin();
@@ -196,12 +207,16 @@ void main()
         uint edge = uint(findLSB(rest));
         uint crossing = edge_vertex(push.links, push.edges, record.slot, record.at, edge);
         vec3 point = load_vector(push.points, crossing), normal = load_vector(push.point_normals, crossing);
-        qef_add_crossing(into_cell(cell, point), normal);
+        vec3 at = into_cell(cell, point);
+        qef_add_crossing(at, normal);
+        least = min(least, at);
+        most = max(most, at);
         capped = capped || is_cap(point, edge >> 2);
         along += normal;
         count += 1.0;
     }
-    Placed placed = place_vertex(cell, along / max(length(along), 1.0e-6));
+    Cell narrow = Cell(cell.corner, clamp(least, cell.lo, cell.hi), clamp(most, cell.lo, cell.hi));
+    Placed placed = place_vertex(cell, narrow, record.loops == 1u, along / max(length(along), 1.0e-6));
     vec3 place = out_of_cell(cell, placed.at);
     write_vertex(vertex, place, vertex_normal(placed.seen, along, count));
     count_vertex(placed.seen.w, capped);

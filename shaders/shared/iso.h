@@ -251,7 +251,7 @@ struct hewn_dual_spread_push {
     HEWN_UINTS vertex_bases;
     HEWN_UINTS quad_bases;
     HEWN_UINTS points;    /* out: as `vertices` of hewn_spread_push */
-    HEWN_UINTS positions; /* out: slot, sample + 512 * mask of the loop's edges */
+    HEWN_UINTS positions; /* out: slot, sample + 512 * mask of the loop's edges, how many loops the cell has */
     HEWN_UINTS passed;    /* out, a vertex: that mask again, which stays */
     HEWN_UINTS indices;   /* out: slot, sample + 512 * axis + 2048 * whether the edge starts inside in the first two of
                              each quad's six words */

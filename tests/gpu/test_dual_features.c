@@ -227,7 +227,7 @@ static void check_pose(dual_subject *subject, const pose *p, tally *sums)
     struct hewn_grid grid = mesh.grid;
     for (int corner = 0; corner < 8; corner++)
         count_corner(p, &grid, &mesh, corner, sums);
-    for (uint64_t i = 0; i < mesh.triangles.vertex_count; i++)
+    for (uint64_t i = 0; i < mesh.triangles.vertex_count - stats.fans; i++)
         count_vertex(p, &grid, mesh.triangles.positions + 3 * i, sums);
     sums->told_corners += stats.corner_vertices;
     sums->told_edges += stats.edge_vertices;
