@@ -155,13 +155,30 @@ static void print_measure(const char *name, double value, const char *units, con
     fprintf(stderr, "%s %.6g%s%s%s", name, value, units[0] ? " " : "", units, units[0] ? power : "");
 }
 
+static const char *plural(uint64_t count)
+{
+    return count == 1 ? "" : "s";
+}
+
+/* What dual contouring found and what it lost. */
+static void print_features(const hewn_extract_stats *stats)
+{
+    if (stats->edge_vertices + stats->corner_vertices > 0)
+        fprintf(stderr, "\n  sharp edges through %llu vert%s, %llu corner%s", (unsigned long long)stats->edge_vertices,
+                stats->edge_vertices == 1 ? "ex" : "ices", (unsigned long long)stats->corner_vertices,
+                plural(stats->corner_vertices));
+    if (stats->features_lost > 0)
+        fprintf(stderr, "; %llu feature%s too fine for the cells", (unsigned long long)stats->features_lost,
+                plural(stats->features_lost));
+}
+
 static void print_summary(const hewn_report *report)
 {
     const hewn_certificate *certificate = &report->certificate;
     fprintf(stderr, "%s: %llu vertices, %llu faces; %s, manifold, oriented; %llu component%s",
             is_dash(report->output) ? "standard output" : report->output, (unsigned long long)report->vertices,
             (unsigned long long)report->faces, certificate->closed ? "closed" : "open",
-            (unsigned long long)certificate->components, certificate->components == 1 ? "" : "s");
+            (unsigned long long)certificate->components, plural(certificate->components));
     if (certificate->genus >= 0)
         fprintf(stderr, ", genus %lld", (long long)certificate->genus);
     fputs("\n  ", stderr);
@@ -173,6 +190,7 @@ static void print_summary(const hewn_report *report)
     if (certificate->max_residual == certificate->max_residual)
         fprintf(stderr, ", vertices within %.2g of a cell of the surface", certificate->max_residual);
     const hewn_extract_stats *grid = &report->extraction;
+    print_features(grid);
     fprintf(stderr, "\n  %llu x %llu x %llu cells of %.6g%s%s, %.2f s on %s\n", (unsigned long long)grid->cells[0],
             (unsigned long long)grid->cells[1], (unsigned long long)grid->cells[2], grid->cell,
             report->units[0] ? " " : "", report->units, report->seconds, report->device.name);
