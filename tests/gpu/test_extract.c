@@ -492,7 +492,7 @@ static void test_cancel_at_every_stage(void **state)
 {
     (void)state;
     subject made = make_subject(make_sphere);
-    for (int stages = 0; stages < 4; stages++) {
+    for (int stages = 0; stages < 5; stages++) {
         countdown counter = {stages};
         hewn_progress progress = {count_down, &counter};
         hewn_extract_desc desc = {

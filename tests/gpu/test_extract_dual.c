@@ -400,6 +400,87 @@ static void test_pairs_are_quads(void **state)
     free_subject(&made);
 }
 
+/* --- awkward fields ----------------------------------------------------------------------------------------------- */
+
+/* Faces, edges and corners of the box are on grid planes, lines and points, where the field is exactly 0. */
+static hewn_node make_aligned_box(hewn_field *field, uint32_t seed)
+{
+    (void)seed;
+    return hewn_box_shape(field, 1, 1, 1);
+}
+
+/* Not a number wherever x < 0.13; what is beyond counts as outside. */
+static hewn_node make_half_nan(hewn_field *field, uint32_t seed)
+{
+    (void)seed;
+    hewn_node root = hewn_sqrt(field, hewn_sub(field, hewn_x(field), hewn_constant(field, 0.13)));
+    return hewn_max(field, hewn_sphere(field, 0.8), hewn_sub(field, root, hewn_constant(field, 2)));
+}
+
+/* Two walls with a gap, each much thinner than a cell; where a sample meets one, there is surface on both sides of it.
+ */
+static hewn_node make_thin_walls(hewn_field *field, uint32_t seed)
+{
+    (void)seed;
+    hewn_node slope = hewn_add(field, hewn_x(field), scaled(field, hewn_y(field), 0.021));
+    hewn_node one = hewn_sub(field, hewn_abs(field, slope), hewn_constant(field, 0.004));
+    hewn_node shifted = hewn_sub(field, slope, hewn_constant(field, 0.02));
+    hewn_node other = hewn_sub(field, hewn_abs(field, shifted), hewn_constant(field, 0.004));
+    return hewn_max(field, hewn_min(field, one, other), hewn_sphere(field, 0.9));
+}
+
+static void test_awkward_fields(void **state)
+{
+    (void)state;
+    static maker *const makers[] = {make_aligned_box, make_half_nan, make_thin_walls};
+    for (uint32_t m = 0; m < sizeof makers / sizeof *makers; m++) {
+        subject made = make_subject(makers[m], 0);
+        for (int i = 0; i < 8; i++) {
+            hewn_extract_desc desc = {.bounds = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
+                                      .resolution = i / 4 ? 48 : 30,
+                                      .method = i % 2 ? HEWN_METHOD_DC : HEWN_METHOD_NETS,
+                                      .open = i / 2 % 2};
+            hewn_triangles mesh = extract(&made, &desc, NULL); /* certify refuses what is not finite */
+            hewn_certificate certificate = certify(&mesh);
+            assert_true(certificate.closed && certificate.manifold && certificate.oriented && certificate.volume > 0);
+            for (uint64_t k = 0; k < 3 * mesh.vertex_count; k++)
+                assert_true(fabsf(mesh.normals[k]) <= 1.0001f);
+            hewn_triangles_destroy(&mesh);
+        }
+        free_subject(&made);
+    }
+}
+
+/* --- cancelling --------------------------------------------------------------------------------------------------- */
+
+static bool count_down(void *user, const char *name, double share)
+{
+    (void)name;
+    (void)share;
+    int *left = user;
+    return (*left)-- > 0;
+}
+
+static void test_cancel_at_every_stage(void **state)
+{
+    (void)state;
+    subject made = make_subject(make_aligned_box, 0);
+    for (int adaptive = 0; adaptive < 2; adaptive++)
+        for (int stages = 0; stages < 5 + 3 * adaptive; stages++) { /* collapsing asks several times */
+            int left = stages;
+            hewn_progress progress = {count_down, &left};
+            hewn_extract_desc desc = {.bounds = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}},
+                                      .resolution = 32,
+                                      .adaptive = adaptive * 0.01,
+                                      .progress = &progress};
+            hewn_error error = {0};
+            hewn_triangles mesh;
+            assert_int_equal(hewn_extract(made.extractor, &desc, &mesh, NULL, &error), HEWN_CANCELLED);
+            assert_null(mesh.positions);
+        }
+    free_subject(&made);
+}
+
 /* --- names -------------------------------------------------------------------------------------------------------- */
 
 static void test_names(void **state)
@@ -422,7 +503,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_as_the_twin),         cmocka_unit_test(test_random_trees_are_manifolds),
         cmocka_unit_test(test_bounds_cut_or_leave_open), cmocka_unit_test(test_same_bytes_every_time),
-        cmocka_unit_test(test_pairs_are_quads),          cmocka_unit_test(test_names),
+        cmocka_unit_test(test_pairs_are_quads),          cmocka_unit_test(test_awkward_fields),
+        cmocka_unit_test(test_cancel_at_every_stage),    cmocka_unit_test(test_names),
     };
     return cmocka_run_group_tests_name("extract_dual", tests, open_device, close_device);
 }
