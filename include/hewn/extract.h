@@ -16,9 +16,22 @@ extern "C" {
 typedef struct hewn_extractor hewn_extractor;
 
 typedef enum hewn_method {
+    HEWN_METHOD_DEFAULT,        /* what is best for a field: HEWN_METHOD_DC */
     HEWN_METHOD_MARCHING_CUBES, /* after Lorensen and Cline 1987, with one rule for ambiguous faces */
-    HEWN_METHOD_MC33            /* the same with the topology of the samples' trilinear interpolant (Chernyaev 1995) */
+    HEWN_METHOD_MC33,           /* the same with the topology of the samples' trilinear interpolant (Chernyaev 1995) */
+    HEWN_METHOD_NETS, /* vertices in cells, at the mean of the crossings (surface nets, Gibson 1998), always manifold */
+    HEWN_METHOD_DC    /* the same where crossings and normals put them (dual contouring, Ju and others 2002) */
 } hewn_method;
+
+/* What commands and reports call a method: mc, mc33, nets, dc. The default's is that of the method it stands for; NULL
+ * past the last one. Static storage. */
+HEWN_API const char *hewn_method_name(hewn_method method);
+
+/* The method of that name. False where there is none. */
+HEWN_API bool hewn_method_named(const char *name, hewn_method *out);
+
+/* Whether a method's vertices lie in cells, so that it makes quads. */
+HEWN_API bool hewn_method_is_dual(hewn_method method);
 
 /* Where and how finely. Zero everywhere but `bounds` is a sensible default. */
 typedef struct hewn_extract_desc {
@@ -26,18 +39,23 @@ typedef struct hewn_extract_desc {
     uint32_t resolution; /* cells on the longest side; 0: 128 (ignored where `cell` is given) */
     double cell;         /* length of a cell's side in scene units; 0: from `resolution` */
     hewn_method method;
-    bool open; /* leave the surface open where it leaves the bounds, instead of closing it there with a cap */
+    bool open;  /* leave the surface open where it leaves the bounds, instead of closing it there with a cap */
+    bool quads; /* by a dual method: two triangles for each quad and nothing else, see hewn_triangles.paired */
+    /* By dual contouring: how far, in scene units, the surface may move where triangles are merged to fewer and larger
+     * ones, see docs/extraction.md; 0: all cells are of one size. Not together with `quads`. */
+    double adaptive;
     const hewn_progress *progress;
 } hewn_extract_desc;
 
 /* What an extraction did. Seconds are wall time on the caller's thread; begin counts from the start of the run. */
 typedef struct hewn_extract_stage {
-    const char *name; /* cull, evaluate, extract, suspects, read_back */
+    const char *name; /* prepare, cull, evaluate, extract, suspects, read_back; where it is adaptive collapse */
     double begin, end;
 } hewn_extract_stage;
 
 typedef struct hewn_extract_stats {
-    hewn_box bounds; /* as grown to whole cells */
+    hewn_method method; /* that was used: not the default */
+    hewn_box bounds;    /* as grown to whole cells */
     double cell;
     uint64_t cells[3];
     uint64_t cells_visited; /* cells whose corners were evaluated */
@@ -50,6 +68,15 @@ typedef struct hewn_extract_stats {
     uint64_t suspect_cells;
     hewn_box first_suspect;   /* where there are any: the first of them, in the order of the grid, x fastest */
     uint64_t undefined_cells; /* cells out there for which the field has no bounds, and so may not be a number */
+    uint64_t fans;            /* by the dual methods: quads that became four triangles, so that they meet no others */
+    /* By dual contouring: */
+    uint64_t edge_vertices;   /* on sharp edges */
+    uint64_t corner_vertices; /* at corners */
+    uint64_t planes_found;    /* that no crossing of the cell had seen */
+    uint64_t features_lost;   /* vertices still off the surface: what their cell holds is finer than it can tell */
+    /* By adaptive dual contouring; the features above are the uniform surface's too: */
+    uint64_t uniform_vertices, uniform_triangles; /* before the merges */
+    uint64_t octree_merges, pair_merges;          /* in nodes of the octree, and afterwards of neighbours */
     hewn_extract_stage stages[8];
     uint32_t stage_count;
 } hewn_extract_stats;

@@ -25,6 +25,9 @@ HEWN_API hewn_mesh_format hewn_mesh_format_of(const char *path_or_extension);
 /* Its extension in lower case, without a dot; NULL for HEWN_MESH_UNKNOWN. */
 HEWN_API const char *hewn_mesh_format_name(hewn_mesh_format format);
 
+/* Whether a file of this format can be written with faces of more than three corners. */
+HEWN_API bool hewn_mesh_format_has_polygons(hewn_mesh_format format);
+
 /* Whether hewn_model_write() in this format writes a channel of a model, all components of it. Numbers may be rounded
  * to what the format has, and values of vertices and corners may lose their names. */
 HEWN_API bool hewn_mesh_format_keeps(hewn_mesh_format format, const hewn_model *model, const hewn_channel *channel);
@@ -53,6 +56,7 @@ typedef struct hewn_write_desc {
      * where the model knows none and no unit is given (GLB and 3MF then take them to be their own). */
     const hewn_unit *unit;
     hewn_axis up;
+    bool quads;                    /* of triangles that are paired: write the quads, where the format has polygons */
     const hewn_progress *progress; /* or NULL; the stage is "write" */
 } hewn_write_desc;
 

@@ -33,6 +33,8 @@ typedef struct hewn_mesh_job_desc {
     double cell;             /* side of a cell in scene units; 0: from `resolution` */
     hewn_method method;
     bool open;          /* leave the surface open where it leaves the bounds */
+    bool quads;         /* write faces of four corners: for a dual method, and a format that has polygons */
+    double adaptive;    /* how far triangles of dc may move where they are merged, scene units; 0: none are */
     const char *device; /* an index or a part of a name; NULL: HEWN_DEVICE from the environment, else the best */
     bool validation;    /* turn the validation layer on; its messages go to stderr and are counted in the report */
     uint32_t threads;   /* of this job, on the host and in a driver that runs on the host; 0: what they choose */
@@ -43,7 +45,8 @@ typedef struct hewn_mesh_job_desc {
 
 /* A stage of a job, in seconds since the job began. Stages may overlap. */
 typedef struct hewn_report_stage {
-    char name[16]; /* startup, load, compile, cull, evaluate, extract, read_back, certify, write, shutdown */
+    char name[16]; /* startup, load, compile, prepare, cull, evaluate, extract, read_back, collapse, certify, write,
+                      shutdown */
     double begin, end;
 } hewn_report_stage;
 
@@ -70,15 +73,17 @@ typedef struct hewn_report {
     char units[16]; /* of the scene's coordinates, and so of the certificate's volume and area */
     hewn_device_info device;
     hewn_mesh_format format;
-    hewn_method method;
+    hewn_method method;  /* that was used: not the default */
     uint32_t resolution; /* asked for; 0 where the cell was given */
     uint32_t threads;    /* asked for; 0 where they were not */
     bool open;
+    bool quads;
+    double adaptive; /* asked for; 0 where it was not */
     hewn_bounds_source bounds_source;
     hewn_extract_stats extraction; /* bounds, cells, counts of visited cells and bricks */
     hewn_certificate certificate;  /* of the mesh that was written, with its max_residual */
     uint64_t vertices;
-    uint64_t faces;
+    uint64_t faces;               /* of the file: triangles or, where they were asked for, quads */
     uint64_t peak_host_bytes;     /* most memory that the process had resident so far */
     uint64_t peak_device_bytes;   /* most device memory in use at once */
     uint64_t validation_messages; /* given by the validation layer, from opening to closing the device */

@@ -16,6 +16,7 @@ typedef struct hewn_triangles {
     float *positions;             /* vertex_count × 3, scene units */
     float *normals;               /* vertex_count × 3, unit length, outward; or NULL */
     uint32_t *indices;            /* triangle_count × 3 */
+    bool paired;                  /* triangles 2i and 2i + 1 are quad i: (a, b, c) and (a, c, d) of (a, b, c, d) */
     void (*release)(void *owner); /* frees all three; where NULL they are from the heap */
     void *owner;
 } hewn_triangles;

@@ -4,7 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 
-#include "iso/brick.h"
+#include "iso/crossed.h"
 #include "iso/table.h"
 #include "shared/invocation.h"
 
@@ -13,22 +13,6 @@ layout(push_constant, scalar) uniform Push
 {
     hewn_classify_push push;
 };
-
-/* Writes the crossed edges that leave a word's samples upward, and counts them. */
-uint classify_edges(uint slot, uint word, uvec4 lower, uvec4 upper, uvec3 base)
-{
-    uvec3 cells = uvec3(push.cells[0], push.cells[1], push.cells[2]);
-    uvec3 edges = lower.xxx ^ uvec3(lower.yz, upper.x);
-    edges.x &= below(base, word, uvec3(cells.x, ~0u, ~0u));
-    edges.y &= below(base, word, uvec3(~0u, cells.y, ~0u));
-    edges.z &= below(base, word, uvec3(~0u, ~0u, cells.z));
-    uint at = 2u * (slot * HEWN_BRICK_EDGE_WORDS + word);
-    push.edges.at[at] = edges.x;
-    push.edges.at[at + 2u * HEWN_BRICK_WORDS] = edges.y;
-    push.edges.at[at + 4u * HEWN_BRICK_WORDS] = edges.z;
-    ivec3 counts = bitCount(edges);
-    return uint(counts.x + counts.y + counts.z);
-}
 
 uint count_triangles(uvec4 lower, uvec4 upper, uint cut)
 {
@@ -58,7 +42,7 @@ void main()
         for (uint half_of = 0u; half_of < 2u; half_of++) {
             uint word = 2u * z + half_of;
             uvec4 under = lower.rows[half_of], over = upper.rows[half_of];
-            crossings += classify_edges(slot, word, under, over, base);
+            crossings += write_crossed(push.edges, slot, word, under, over, base, cells);
             triangle_count += count_triangles(under, over, surface_cells(under, over, below(base, word, cells)));
         }
         lower = upper;

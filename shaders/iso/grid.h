@@ -3,6 +3,6 @@
 /* Sample i of an axis. */
 float sample_coordinate(hewn_grid grid, uint axis, uint i)
 {
-    precise float at = grid.origin[axis] + grid.cell * float(i);
-    return i >= grid.cells[axis] ? grid.far[axis] : at;
+    precise float at = grid.origin[axis] + grid.cell * float(max(i, grid.rim) - grid.rim);
+    return i + grid.rim >= grid.cells[axis] ? grid.far[axis] : at;
 }

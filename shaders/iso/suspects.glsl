@@ -92,17 +92,20 @@ uvec2 cells_below(uint room, uvec2 low, uvec2 high)
     return room > 3u ? uvec2(~0u) : room > 0u ? cells : uvec2(0u);
 }
 
-/* The block's remote cells. `corner` is its place in the brick, `room` the number of the grid's cells from there on. */
-uvec2 remote_cells(uint slot, uvec3 corner, uvec3 room)
+/* The block's remote cells. `corner` is its place in the brick, `room` the number of the grid's cells from there on, of
+ * which the first `rim` have no thickness. */
+uvec2 remote_cells(uint slot, uvec3 corner, uvec3 rim, uvec3 room)
 {
     uvec3 half_at = corner / 2u;
     uint halves = push.remote.at[2u * slot + half_at.z / 2u] >> (half_at.x + 4u * half_at.y);
     uvec2 layers = uvec2(halves, halves >> 16);
     layers = layers & 3u | layers >> 2u & 12u;
     uvec2 cells = 0xFFu * (layers * 0x00204081u & 0x01010101u); /* a byte for each bit */
-    cells &= cells_below(room.x, uvec2(0xAAAAAAAAu), uvec2(0xFF00FF00u));
-    cells &= cells_below(room.y, uvec2(0xCCCCCCCCu), uvec2(0xFFFF0000u));
-    return cells & cells_below(room.z, uvec2(0xF0F0F0F0u), uvec2(0u, ~0u));
+    const uvec2 low[3] = uvec2[3](uvec2(0xAAAAAAAAu), uvec2(0xCCCCCCCCu), uvec2(0xF0F0F0F0u));
+    const uvec2 high[3] = uvec2[3](uvec2(0xFF00FF00u), uvec2(0xFFFF0000u), uvec2(0u, ~0u));
+    for (uint axis = 0u; axis < 3u; axis++)
+        cells &= cells_below(room[axis], low[axis], high[axis]) & ~cells_below(rim[axis], low[axis], high[axis]);
+    return cells;
 }
 
 /* Whether a block's remote cells are inside: those of one block have one sign, since none of its halves is farther from
@@ -133,7 +136,8 @@ void main()
     uvec3 corner = 4u * (uvec3(block, block >> 1, block >> 2) & 1u);
     uvec3 first = 8u * unpack_brick(push.bricks.at[slot]) + corner;
     uvec3 cells = uvec3(push.grid.cells[0], push.grid.cells[1], push.grid.cells[2]);
-    uvec2 left = remote_cells(slot, corner, cells - min(first, cells));
+    uvec3 room = max(cells - push.grid.rim, first) - first;
+    uvec2 left = remote_cells(slot, corner, max(uvec3(push.grid.rim), first) - first, room);
     bool inside = are_inside(left, slot, corner);
     uvec3 origin = first * PARTS_A_CELL, limit = cells * PARTS_A_CELL;
     uvec2 box = left == uvec2(0u) ? uvec2(0u, END) : uvec2(0u);

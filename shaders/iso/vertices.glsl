@@ -12,6 +12,7 @@ const float NEAREST = 1.25 / 4096.0;
 /* A value that the edge's mean slope takes back in this share of a cell ends the search. */
 const float NEAR_ENOUGH = 1.0e-5;
 const uint MOST_TRIALS = 24u;
+const float CORRECTED = 1.0e-3; /* of a cell: a place that is farther off than this lies on no surface */
 
 float value_along(vec3 start, uint axis, float side, float t)
 {
@@ -92,12 +93,17 @@ void main()
         atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], 1u);
         return;
     }
-    float t = clamp(crossing(start, axis, side, at_start, at_end), NEAREST, 1.0 - NEAREST);
+    float least = push.dual != 0u ? 0.0 : NEAREST;
+    float t = clamp(crossing(start, axis, side, at_start, at_end), least, 1.0 - least);
     precise vec3 at = start;
     at[axis] = start[axis] + side * t;
     vec4 gradient = field_gradient(at.x, at.y, at.z);
     float size = length(gradient.xyz);
     bool sloped = finite(size) && size > 0.0;
+    /* Dual methods ask for the tangent plane, not for the place on the edge: what the search left is taken off. */
+    float off = gradient.w / size;
+    if (push.dual != 0u && sloped && abs(off) <= push.grid.cell * CORRECTED)
+        at -= off * (gradient.xyz / size);
     write_vertex(vertex, at, sloped ? gradient.xyz / size : outward);
     float residual = abs(gradient.w) / (size * push.grid.cell);
     if (sloped && finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])

@@ -19,13 +19,16 @@
 #define HEWN_ALL_OUTSIDE 0xFFFFFFFEu
 #define HEWN_ALL_INSIDE 0xFFFFFFFFu
 
-/* Sample i along axis a is at origin[a] + cell * i, but the last one is at far[a] exactly. */
+/* Sample i along axis a is at origin[a] + cell * i, but the last one is at far[a] exactly. With a rim, which the dual
+ * methods lay around an open grid, the first and the last layer of cells have no thickness: samples 0 and 1 are both at
+ * the origin, and so on, and a mesh of vertices in cells ends on the bounds. */
 struct hewn_grid {
     float origin[3];
     float far[3];
     float cell;
     HEWN_UINT cells[3];
     HEWN_UINT open; /* 1: samples on the bounds are what the field says; 0: they are outside */
+    HEWN_UINT rim;  /* 1: the first and the last layer have no thickness */
 };
 
 #ifdef GL_core_profile
@@ -76,6 +79,7 @@ struct hewn_link_push {
 struct hewn_sign_push {
     HEWN_GRID grid;
     HEWN_UINT count;
+    HEWN_UINT pad;
     HEWN_UINTS bricks;
     HEWN_UINTS signs; /* out: 16 words a brick */
 };
@@ -108,6 +112,7 @@ struct hewn_spread_push {
 struct hewn_vertex_push {
     HEWN_GRID grid;
     HEWN_UINT count;
+    HEWN_UINT dual; /* 1: crossings are not the mesh's vertices, and need not keep away from grid points */
     HEWN_UINTS bricks;
     HEWN_FLOATS positions; /* in: records; out: positions */
     HEWN_FLOATS normals;   /* out */
@@ -116,7 +121,11 @@ struct hewn_vertex_push {
 
 #define HEWN_SUMMARY_RESIDUAL 0u /* bits of the largest |f| / |grad f| in cells */
 #define HEWN_SUMMARY_CAPS 1u     /* vertices on the bounds because the surface was cut there */
-#define HEWN_SUMMARY_WORDS 2u
+#define HEWN_SUMMARY_EDGES 2u    /* dual contouring: vertices on sharp edges, */
+#define HEWN_SUMMARY_CORNERS 3u  /* at corners, */
+#define HEWN_SUMMARY_PLANES 4u   /* planes found that no crossing had seen, */
+#define HEWN_SUMMARY_LOST 5u     /* vertices still off the surface */
+#define HEWN_SUMMARY_WORDS 6u
 
 struct hewn_triangle_push {
     HEWN_UINT count;
@@ -145,6 +154,7 @@ struct hewn_mc33_ask_push {
 struct hewn_mc33_decide_push {
     HEWN_GRID grid;
     HEWN_UINT count; /* cells that are asked */
+    HEWN_UINT pad;
     HEWN_UINTS bricks;
     HEWN_UINTS table;
     HEWN_UINTS asked; /* in: as above; out: the first word is the place of the record in the table */
@@ -186,13 +196,114 @@ struct hewn_mc33_centre_push {
     HEWN_GRID grid;
     HEWN_UINT count;
     HEWN_UINT first;
-    HEWN_UINT pad;
     HEWN_UINTS bricks;
     HEWN_UINTS links;
     HEWN_UINTS edges;
     HEWN_FLOATS positions; /* in: records; out: positions */
     HEWN_FLOATS normals;   /* out */
     HEWN_UINTS summary;
+};
+
+/* --- dual methods: vertices in cells ------------------------------------------------------------------------------ */
+
+/* What is known of a word of 32 cells, as words at these places; so a cell's loop l is vertex
+ * first + bits of `cells`, `low` and twice `high` below the cell's + l. */
+#define HEWN_DUAL_CELLS 0u /* cells with surface */
+#define HEWN_DUAL_LOW 1u   /* low binary digit of how many loops each has beyond one */
+#define HEWN_DUAL_HIGH 2u
+#define HEWN_DUAL_TURNED 3u /* cells whose doubtful face joins the inside: see hewn_dual_table */
+#define HEWN_DUAL_FIRST 4u  /* number of the first vertex */
+#define HEWN_DUAL_WORDS 5u
+#define HEWN_BRICK_DUAL_WORDS 80u
+
+/* Whose upper neighbour a brick is: link.comp's work turned around. */
+struct hewn_dual_link_push {
+    HEWN_UINT count;
+    HEWN_UINT pad;
+    HEWN_UINTS links;
+    HEWN_UINTS lower; /* in: HEWN_ALL_OUTSIDE; out, three a brick: slot of the lower neighbour along each axis */
+};
+
+struct hewn_dual_classify_push {
+    HEWN_UINT cells[3];
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS lower;
+    HEWN_UINTS signs;
+    HEWN_UINTS edges;           /* out: the masks, as in hewn_classify_push */
+    HEWN_UINTS loops;           /* out: HEWN_BRICK_DUAL_WORDS a brick, but for HEWN_DUAL_FIRST */
+    HEWN_UINTS crossing_counts; /* out, a brick */
+    HEWN_UINTS vertex_counts;   /* out, a brick */
+    HEWN_UINTS quad_counts;     /* out, a brick */
+};
+
+/* One record a crossing, a vertex and a quad, parked where the results will go. */
+struct hewn_dual_spread_push {
+    HEWN_UINT cells[3];
+    HEWN_UINT count;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS signs;
+    HEWN_UINTS edges; /* in: the masks; out: the numbers of crossings */
+    HEWN_UINTS loops; /* out: HEWN_DUAL_FIRST */
+    HEWN_UINTS crossing_bases;
+    HEWN_UINTS vertex_bases;
+    HEWN_UINTS quad_bases;
+    HEWN_UINTS points;    /* out: as `vertices` of hewn_spread_push */
+    HEWN_UINTS positions; /* out: slot, sample + 512 * mask of the loop's edges, how many loops the cell has */
+    HEWN_UINTS passed;    /* out, a vertex: that mask again, which stays */
+    HEWN_UINTS indices;   /* out: slot, sample + 512 * axis + 2048 * whether the edge starts inside in the first two of
+                             each quad's six words */
+};
+
+struct hewn_dual_vertex_push {
+    HEWN_GRID grid;
+    HEWN_UINT count;
+    HEWN_UINT pad;
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS edges;
+    HEWN_FLOATS points;        /* the crossings on grid edges, */
+    HEWN_FLOATS point_normals; /* and the unit normals there */
+    HEWN_FLOATS positions;     /* in: records; out: positions */
+    HEWN_FLOATS normals;       /* out */
+    HEWN_UINTS summary;
+};
+
+struct hewn_dual_quad_push {
+    HEWN_GRID grid;
+    HEWN_UINT count;
+    HEWN_UINT keep; /* HEWN_KEEP_ */
+    HEWN_UINTS bricks;
+    HEWN_UINTS links;
+    HEWN_UINTS edges;
+    HEWN_UINTS loops;
+    HEWN_UINTS passed;
+    HEWN_FLOATS points;
+    HEWN_FLOATS positions;
+    HEWN_UINTS indices;   /* in: records; out: two triangles a quad */
+    HEWN_UINTS crossings; /* out, a quad: number of the crossing on its edge */
+};
+
+#define HEWN_KEEP_NONE 0u
+#define HEWN_KEEP_ALL 1u
+#define HEWN_KEEP_FANS 2u /* only where the quad is to be a fan, and the point is moved to the fan's middle */
+#define HEWN_NO_FAN 0xFFFFFFFFu
+
+/* Fans in the place of quads, see dual_fans.comp. */
+struct hewn_dual_fan_push {
+    HEWN_UINT count;    /* quads */
+    HEWN_UINT makes;    /* 0: ranks become marks; 1: they are sums, and fans are made */
+    HEWN_UINT vertices; /* before those of fans */
+    HEWN_UINT pad;
+    HEWN_UINTS crossings;
+    HEWN_UINTS ranks;
+    HEWN_FLOATS points;
+    HEWN_FLOATS point_normals;
+    HEWN_FLOATS positions;
+    HEWN_FLOATS normals;
+    HEWN_UINTS indices;
 };
 
 /* --- features thinner than a cell --------------------------------------------------------------------------------- */
@@ -221,6 +332,7 @@ struct hewn_remote_push {
 struct hewn_suspect_push {
     HEWN_GRID grid;
     HEWN_UINT count;
+    HEWN_UINT pad;
     HEWN_UINTS bricks;
     HEWN_UINTS signs;
     HEWN_UINTS remote;

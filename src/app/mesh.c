@@ -16,8 +16,15 @@ static const hewn_option options[] = {
     {0, "res", "N", "Use N cells on the longest side of the bounds. Default: 128."},
     {0, "cell", "H", "Use cells of side H, in the scene's units, instead of --res."},
     {0, "method", "NAME",
-     "Extract the surface by this method: mc (marching cubes) or mc33 (the same, connected as the samples' trilinear "
-     "interpolant is). Default: mc."},
+     "Extract the surface by this method: mc (marching cubes), mc33 (the same, connected as the samples' trilinear "
+     "interpolant is), nets (a vertex in each cell, at the mean of the crossings) or dc (dual contouring: the same "
+     "with "
+     "sharp edges and corners). Default: dc."},
+    {0, "quads", NULL, "Write the quads of nets or dc, two triangles each, as faces of four corners (OBJ, OFF, PLY)."},
+    {0, "adaptive", "ERROR",
+     "Merge the triangles of dc to fewer and larger ones, as far as the surface moves by no more than ERROR, a length "
+     "in "
+     "the scene's units."},
     {0, "bounds", "BOX",
      "Look for the surface in BOX = x0,y0,z0,x1,y1,z1. Default: the scene's own bounds, else found from the field."},
     {0, "open", NULL, "Leave the surface open where it leaves the bounds. Default: close it there with a flat cap."},
@@ -49,12 +56,26 @@ static bool is_dash(const char *path)
     return strcmp(path, "-") == 0;
 }
 
+static hewn_result parse_method(const char *name, hewn_method *out, hewn_error *error)
+{
+    char names[64] = "";
+    if (hewn_method_named(name, out))
+        return HEWN_OK;
+    for (hewn_method method = HEWN_METHOD_DEFAULT + 1; hewn_method_name(method); method++) {
+        size_t length = strlen(names);
+        const char *between = length == 0 ? "" : hewn_method_name(method + 1) ? ", " : " or ";
+        snprintf(names + length, sizeof names - length, "%s%s", between, hewn_method_name(method));
+    }
+    return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method is %s, not '%s'", names, name);
+}
+
 static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
 {
     const char *resolution = hewn_arguments_value(arguments, "res");
     const char *cell = hewn_arguments_value(arguments, "cell");
     const char *bounds = hewn_arguments_value(arguments, "bounds");
     const char *method = hewn_arguments_value(arguments, "method");
+    const char *adaptive = hewn_arguments_value(arguments, "adaptive");
     if (resolution && cell)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--res and --cell exclude each other");
     if (resolution)
@@ -64,13 +85,18 @@ static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *requ
         if (!(request->desc.cell > 0))
             return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--cell must be greater than 0, not %s", cell);
     }
+    if (adaptive) {
+        HEWN_TRY(hewn_number_parse(adaptive, "--adaptive", &request->desc.adaptive, error));
+        if (!(request->desc.adaptive > 0))
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--adaptive must be greater than 0, not %s", adaptive);
+    }
     if (bounds) {
         HEWN_TRY(hewn_bounds_parse(bounds, "--bounds", &request->bounds, error));
         request->desc.bounds = &request->bounds;
     }
-    if (method && strcmp(method, "mc") != 0 && strcmp(method, "mc33") != 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method is mc or mc33, not '%s'", method);
-    request->desc.method = method && strcmp(method, "mc33") == 0 ? HEWN_METHOD_MC33 : HEWN_METHOD_MARCHING_CUBES;
+    if (method)
+        HEWN_TRY(parse_method(method, &request->desc.method, error));
+    request->desc.quads = hewn_arguments_has(arguments, "quads");
     request->desc.open = hewn_arguments_has(arguments, "open");
     return HEWN_OK;
 }
@@ -129,13 +155,30 @@ static void print_measure(const char *name, double value, const char *units, con
     fprintf(stderr, "%s %.6g%s%s%s", name, value, units[0] ? " " : "", units, units[0] ? power : "");
 }
 
+static const char *plural(uint64_t count)
+{
+    return count == 1 ? "" : "s";
+}
+
+/* What dual contouring found and what it lost. */
+static void print_features(const hewn_extract_stats *stats)
+{
+    if (stats->edge_vertices + stats->corner_vertices > 0)
+        fprintf(stderr, "\n  sharp edges through %llu vert%s, %llu corner%s", (unsigned long long)stats->edge_vertices,
+                stats->edge_vertices == 1 ? "ex" : "ices", (unsigned long long)stats->corner_vertices,
+                plural(stats->corner_vertices));
+    if (stats->features_lost > 0)
+        fprintf(stderr, "; %llu feature%s too fine for the cells", (unsigned long long)stats->features_lost,
+                plural(stats->features_lost));
+}
+
 static void print_summary(const hewn_report *report)
 {
     const hewn_certificate *certificate = &report->certificate;
     fprintf(stderr, "%s: %llu vertices, %llu faces; %s, manifold, oriented; %llu component%s",
             is_dash(report->output) ? "standard output" : report->output, (unsigned long long)report->vertices,
             (unsigned long long)report->faces, certificate->closed ? "closed" : "open",
-            (unsigned long long)certificate->components, certificate->components == 1 ? "" : "s");
+            (unsigned long long)certificate->components, plural(certificate->components));
     if (certificate->genus >= 0)
         fprintf(stderr, ", genus %lld", (long long)certificate->genus);
     fputs("\n  ", stderr);
@@ -147,6 +190,7 @@ static void print_summary(const hewn_report *report)
     if (certificate->max_residual == certificate->max_residual)
         fprintf(stderr, ", vertices within %.2g of a cell of the surface", certificate->max_residual);
     const hewn_extract_stats *grid = &report->extraction;
+    print_features(grid);
     fprintf(stderr, "\n  %llu x %llu x %llu cells of %.6g%s%s, %.2f s on %s\n", (unsigned long long)grid->cells[0],
             (unsigned long long)grid->cells[1], (unsigned long long)grid->cells[2], grid->cell,
             report->units[0] ? " " : "", report->units, report->seconds, report->device.name);

@@ -33,7 +33,8 @@ typedef struct hewn_writing {
     const float *floats;   /* positions, of triangle buffers, */
     const double *doubles; /* or of a model */
     bool all_float;        /* every position is a float */
-    const uint64_t *first; /* NULL: every face is a triangle */
+    const uint64_t *first; /* NULL: every face has `each` corners */
+    uint32_t each;
     const uint32_t *corners;
     const uint32_t *cut; /* for writers of triangles: 3 places in `corners` each; NULL: the faces are the triangles */
     uint64_t triangle_count;
@@ -81,7 +82,7 @@ static inline void hewn_writing_triangle(const hewn_writing *job, uint64_t trian
 
 static inline uint64_t hewn_writing_first(const hewn_writing *job, uint64_t face)
 {
-    return job->first ? job->first[face] : 3 * face;
+    return job->first ? job->first[face] : job->each * face;
 }
 
 /* The channel of a name, or NULL. */

@@ -274,7 +274,7 @@ static hewn_result measure(hewn_writing *job, hewn_error *error)
     if (!longest)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
     job->own = longest;
-    *longest = job->first ? 0 : 3;
+    *longest = job->first ? 0 : job->each;
     for (uint64_t face = 0; job->first && face < job->face_count; face++)
         if (job->first[face + 1] - job->first[face] > *longest)
             *longest = job->first[face + 1] - job->first[face];

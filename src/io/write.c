@@ -22,6 +22,12 @@ static const hewn_format_writer *writer_of(hewn_mesh_format format)
     return NULL;
 }
 
+bool hewn_mesh_format_has_polygons(hewn_mesh_format format)
+{
+    const hewn_format_writer *writer = writer_of(format);
+    return writer && !writer->triangles;
+}
+
 const hewn_channel *hewn_writing_channel(const hewn_writing *job, hewn_domain domain, const char *name)
 {
     for (uint32_t i = 0; i < job->channel_count; i++)
@@ -156,6 +162,25 @@ static hewn_result prepare_and_write(hewn_writing *job, const hewn_format_writer
     return result;
 }
 
+/* Pairs of triangles as faces of four corners, which are the caller's. */
+static hewn_result take_quads(const hewn_triangles *triangles, uint32_t **out, hewn_writing *job, hewn_error *error)
+{
+    uint64_t count = triangles->triangle_count / 2;
+    uint32_t *quads = hewn_alloc(count, 4 * sizeof *quads);
+    if (!quads)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
+    for (uint64_t i = 0; i < count; i++) {
+        memcpy(quads + 4 * i, triangles->indices + 6 * i, 3 * sizeof *quads);
+        quads[4 * i + 3] = triangles->indices[6 * i + 5];
+    }
+    job->face_count = count;
+    job->corner_count = 4 * count;
+    job->each = 4;
+    job->corners = quads;
+    *out = quads;
+    return HEWN_OK;
+}
+
 hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *path, const hewn_write_desc *desc,
                                  hewn_error *error)
 {
@@ -169,6 +194,7 @@ hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *pa
                         .corner_count = 3 * triangles->triangle_count,
                         .floats = triangles->positions,
                         .all_float = true,
+                        .each = 3,
                         .corners = triangles->indices,
                         .triangle_count = triangles->triangle_count,
                         .channels = &normals,
@@ -177,9 +203,14 @@ hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *pa
                         .up = wanted->up,
                         .up_known = true,
                         .progress = wanted->progress};
+    uint32_t *quads = NULL;
     HEWN_TRY(check_size(&job, writer, error));
     HEWN_TRY(check_triangles(triangles, error));
-    return prepare_and_write(&job, writer, path, wanted, error);
+    if (wanted->quads && triangles->paired && !writer->triangles)
+        HEWN_TRY(take_quads(triangles, &quads, &job, error));
+    hewn_result result = prepare_and_write(&job, writer, path, wanted, error);
+    hewn_free(quads);
+    return result;
 }
 
 static bool is_all_float(const hewn_model *model)
@@ -203,6 +234,7 @@ hewn_result hewn_model_write(const hewn_model *model, const char *path, const he
                         .doubles = model->positions,
                         .all_float = is_all_float(model),
                         .first = model->first,
+                        .each = 3,
                         .corners = model->corners,
                         .triangle_count = model->face_count,
                         .channels = model->channels,

@@ -6,6 +6,7 @@
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "iso/adaptive.h"
 #include "iso/extractor.h"
 
 /* Owns what a finished mesh lies in where that is the device's memory. */
@@ -27,6 +28,7 @@ static void release_mapped(void *owner)
 typedef struct extraction {
     const hewn_extractor *extractor;
     const hewn_extract_desc *desc;
+    hewn_method method;
     struct hewn_grid grid;
     hewn_workspace workspace;
     hewn_extract_stats *stats;
@@ -65,7 +67,7 @@ static hewn_result look_between_samples(extraction *run, const hewn_bricks *bric
     hewn_suspects suspects;
     HEWN_TRY(hewn_suspects_find(run->extractor, &run->grid, bricks, surface, &run->workspace, &suspects, error));
     note_suspects(run, &suspects);
-    return stage(run, "suspects", begin, hewn_clock_now(), 0.95, error);
+    return stage(run, "suspects", begin, hewn_clock_now(), 0.85, error);
 }
 
 /* --- no surface: why --------------------------------------------------------------------------------------------- */
@@ -135,14 +137,38 @@ static hewn_result hand_over(mapped_mesh *mesh, const hewn_surface *surface, hew
                             .positions = mesh->buffers[0].mapped,
                             .normals = mesh->buffers[1].mapped,
                             .indices = mesh->buffers[2].mapped,
+                            .paired = surface->loops && surface->fan_count == 0,
                             .release = release_mapped,
                             .owner = mesh};
 
     return HEWN_OK;
 }
 
-static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface, mapped_mesh *mesh,
-                             hewn_error *error)
+static void note_emission(hewn_extract_stats *stats, const hewn_emission *emission)
+{
+    stats->cap_vertices = emission->caps;
+    stats->max_residual = emission->max_residual;
+    stats->edge_vertices = emission->edge_vertices;
+    stats->corner_vertices = emission->corner_vertices;
+    stats->planes_found = emission->planes_found;
+    stats->features_lost = emission->features_lost;
+}
+
+/* Merging wants quads, and takes what they were made of. */
+static hewn_result emit_dual(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, mapped_mesh *mesh,
+                             hewn_dual_hermite *kept, hewn_emission *emission, hewn_error *error)
+{
+    uint32_t keep = run->desc->adaptive > 0 ? HEWN_KEEP_ALL : run->desc->quads ? HEWN_KEEP_NONE : HEWN_KEEP_FANS;
+    HEWN_TRY(hewn_dual_emit(run->extractor, &run->grid, bricks, surface, run->method, mesh->buffers, &run->workspace,
+                            keep, kept, emission, error));
+    if (keep == HEWN_KEEP_FANS)
+        HEWN_TRY(hewn_dual_add_fans(run->extractor, kept, surface, mesh->buffers, &run->workspace, error));
+    run->stats->fans = surface->fan_count;
+    return HEWN_OK;
+}
+
+static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, mapped_mesh *mesh,
+                             hewn_dual_hermite *kept, hewn_error *error)
 {
     static const char *const what[3] = {"positions", "normals", "indices"};
     uint64_t items[3] = {surface->vertex_count, surface->vertex_count, surface->triangle_count};
@@ -150,11 +176,14 @@ static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, const h
         HEWN_TRY(
             hewn_buffer_create(mesh->device, what[i], 12 * items[i], HEWN_BUFFER_DEVICE, &mesh->buffers[i], error));
     hewn_emission emission = {0};
-    HEWN_TRY(hewn_surface_emit(run->extractor, &run->grid, bricks, surface, mesh->buffers, &run->workspace, &emission,
-                               error));
-    run->stats->cap_vertices = emission.caps;
-    run->stats->max_residual = emission.max_residual;
-    return HEWN_OK;
+    if (hewn_method_is_dual(run->method))
+        HEWN_TRY(emit_dual(run, bricks, surface, mesh, kept, &emission, error));
+    else
+        HEWN_TRY(hewn_surface_emit(run->extractor, &run->grid, bricks, surface, mesh->buffers, &run->workspace,
+                                   &emission, error));
+    note_emission(run->stats, &emission);
+    run->stats->left_bounds = emission.capped_crossings > 0;
+    return emission.capped_crossings == surface->crossing_count ? explain_empty(run, error) : HEWN_OK;
 }
 
 /* Whether an open surface reaches the bounds: it does where a vertex lies on them. */
@@ -166,6 +195,40 @@ static bool touches_bounds(const extraction *run, const hewn_triangles *triangle
             return true;
     }
     return false;
+}
+
+/* Merges what the tolerance allows, on the host. */
+static hewn_result collapse(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface,
+                            const mapped_mesh *mesh, const hewn_dual_hermite *kept, hewn_triangles *out,
+                            hewn_error *error)
+{
+    hewn_dual_reading reading;
+    hewn_adaptive_stats merged;
+    hewn_extract_stats *stats = run->stats;
+    double start = hewn_clock_now();
+    HEWN_TRY(hewn_dual_read(run->extractor, &run->grid, bricks, surface, kept, mesh->buffers, &run->workspace, &reading,
+                            error));
+    double read = hewn_clock_now();
+    hewn_result result = stage(run, "read_back", start, read, 0.9, error);
+    if (result == HEWN_OK)
+        result =
+            hewn_adaptive_collapse(&reading.surface, run->desc->adaptive, run->desc->progress, out, &merged, error);
+    hewn_dual_reading_clear(&reading);
+    if (result != HEWN_OK)
+        return result;
+    stats->uniform_vertices = surface->vertex_count;
+    stats->uniform_triangles = surface->triangle_count;
+    stats->octree_merges = merged.octree_merges;
+    stats->pair_merges = merged.pair_merges;
+    stats->max_residual = NAN; /* vertices have moved */
+    return stage(run, "collapse", read, hewn_clock_now(), 1, error);
+}
+
+static hewn_result classify(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, hewn_error *error)
+{
+    if (hewn_method_is_dual(run->method))
+        return hewn_dual_classify(run->extractor, &run->grid, bricks, &run->workspace, surface, error);
+    return hewn_surface_classify(run->extractor, &run->grid, bricks, &run->workspace, surface, error);
 }
 
 static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *error)
@@ -180,36 +243,56 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     HEWN_TRY(stage(run, "cull", start, culled, 0.1, error));
     if (bricks.count == 0)
         return explain_empty(run, error);
-    HEWN_TRY(hewn_surface_classify(run->extractor, &run->grid, &bricks, &run->workspace, &surface, error));
+    HEWN_TRY(classify(run, &bricks, &surface, error));
     double evaluated = culled + surface.sign_seconds;
     HEWN_TRY(stage(run, "evaluate", culled, evaluated, 0.5, error));
-    if (surface.vertex_count == 0) {
+    if (surface.crossing_count == 0) {
         HEWN_TRY(look_between_samples(run, &bricks, &surface, error));
         return explain_empty(run, error);
     }
-    if (run->desc->method == HEWN_METHOD_MC33)
+    if (run->method == HEWN_METHOD_MC33)
         HEWN_TRY(hewn_mc33_refine(run->extractor, &run->grid, &bricks, &run->workspace, &surface, error));
     mapped_mesh *mesh = hewn_alloc_zero(1, sizeof *mesh);
     if (!mesh)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a mesh");
     mesh->device = run->extractor->device;
-    hewn_result result = emit_into(run, &bricks, &surface, mesh, error);
+    hewn_dual_hermite kept;
+    hewn_result result = emit_into(run, &bricks, &surface, mesh, &kept, error);
     double extracted = hewn_clock_now();
     if (result == HEWN_OK)
-        result = stage(run, "extract", evaluated, extracted, 0.9, error);
-    if (result == HEWN_OK && run->stats->cap_vertices == surface.vertex_count - surface.centre_count)
-        result = explain_empty(run, error);
+        result = stage(run, "extract", evaluated, extracted, 0.8, error);
     if (result == HEWN_OK)
         result = look_between_samples(run, &bricks, &surface, error);
     double searched = hewn_clock_now();
-    if (result == HEWN_OK)
+    bool merge = run->desc->adaptive > 0;
+    if (result == HEWN_OK && merge)
+        result = collapse(run, &bricks, &surface, mesh, &kept, out, error);
+    else if (result == HEWN_OK)
         result = hand_over(mesh, &surface, out, error);
-    if (result != HEWN_OK) {
+    if (result != HEWN_OK || merge)
         release_mapped(mesh);
+    if (result != HEWN_OK)
         return result;
-    }
-    run->stats->left_bounds = run->desc->open ? touches_bounds(run, out) : run->stats->cap_vertices > 0;
-    return stage(run, "read_back", searched, hewn_clock_now(), 1, error);
+    if (run->desc->open)
+        run->stats->left_bounds = touches_bounds(run, out);
+    return merge ? HEWN_OK : stage(run, "read_back", searched, hewn_clock_now(), 1, error);
+}
+
+static hewn_result prepare(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_method method,
+                           hewn_error *error)
+{
+    if (!hewn_method_name(method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no extraction method %d", (int)method);
+    if (desc->quads && !hewn_method_is_dual(method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the method %s makes no quads: its vertices lie on grid edges",
+                         hewn_method_name(method));
+    if (!(desc->adaptive >= 0) || !isfinite(desc->adaptive))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", desc->adaptive);
+    if (desc->adaptive > 0 && (method != HEWN_METHOD_DC || desc->quads))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "only the triangles of dc can be merged to a tolerance");
+    if (method == HEWN_METHOD_MC33)
+        return hewn_mc33_prepare(extractor, error);
+    return hewn_method_is_dual(method) ? hewn_dual_prepare(extractor, method, error) : HEWN_OK;
 }
 
 hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_triangles *out,
@@ -218,16 +301,18 @@ hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *des
     hewn_extract_stats unwanted;
     extraction run = {
         .extractor = extractor, .desc = desc, .workspace.device = extractor->device, .begin = hewn_clock_now()};
+    run.method = desc->method == HEWN_METHOD_DEFAULT ? HEWN_METHOD_DC : desc->method;
     run.stats = stats ? stats : &unwanted;
-    *run.stats = (hewn_extract_stats){0};
+    *run.stats = (hewn_extract_stats){.method = run.method};
     *out = (hewn_triangles){0};
     HEWN_TRY(hewn_grid_lay(desc, &run.grid, &run.stats->bounds, error));
-    if (desc->method == HEWN_METHOD_MC33)
-        HEWN_TRY(hewn_mc33_prepare(extractor, error));
-    run.stats->cell =
-        desc->cell != 0 ? desc->cell : (run.stats->bounds.hi[0] - run.stats->bounds.lo[0]) / run.grid.cells[0];
+    HEWN_TRY(prepare(extractor, desc, run.method, error));
+    HEWN_TRY(stage(&run, "prepare", run.begin, hewn_clock_now(), 0.02, error));
     for (int axis = 0; axis < 3; axis++)
-        run.stats->cells[axis] = run.grid.cells[axis];
+        run.stats->cells[axis] = run.grid.cells[axis] - 2 * run.grid.rim;
+    run.stats->cell = desc->cell != 0
+                          ? desc->cell
+                          : (run.stats->bounds.hi[0] - run.stats->bounds.lo[0]) / (double)run.stats->cells[0];
     hewn_result result = run_stages(&run, out, error);
     hewn_workspace_clear(&run.workspace);
     if (result != HEWN_OK)

@@ -138,6 +138,7 @@ void hewn_extractor_destroy(hewn_extractor **extractor_place)
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         hewn_program_destroy(device, programs[i]);
     hewn_mc33_clear(extractor);
+    hewn_dual_clear(extractor);
     hewn_buffer_destroy(device, &extractor->table);
     hewn_scan_destroy(device, &extractor->scan);
     hewn_code_destroy(device, &extractor->code);

@@ -6,6 +6,7 @@
 
 #include "eval/code.h"
 #include "gpu/gpu.h"
+#include "iso/dual.h"
 #include "iso/grid.h"
 
 /* What only the trilinear interpolant's topology needs, made when it is first asked for. */
@@ -18,6 +19,12 @@ typedef struct hewn_mc33_programs {
 typedef struct hewn_suspect_programs {
     hewn_program *cuts, *remote, *find;
 } hewn_suspect_programs;
+/* What only the methods with vertices in cells need, made when one is first asked for. */
+typedef struct hewn_dual_programs {
+    hewn_buffer table; /* hewn_dual_table */
+    hewn_program *link, *classify, *spread, *quads, *fans;
+    hewn_program *nets, *dc; /* vertices by each method */
+} hewn_dual_programs;
 
 struct hewn_extractor {
     hewn_device *device;
@@ -28,6 +35,7 @@ struct hewn_extractor {
     hewn_program *compact, *link, *classify, *spread, *triangles; /* the same for all */
     hewn_suspect_programs suspects;
     hewn_mc33_programs mc33;
+    hewn_dual_programs dual;
 };
 
 /* As hewn_extractor_create(), with a say in where the field's numbers live. */
@@ -62,17 +70,26 @@ hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_
 
 /* The surface in those bricks, as counts and ranks on the device. */
 typedef struct hewn_surface {
-    uint64_t vertex_count; /* in cells too */
+    uint64_t crossing_count; /* crossed edges of the grid */
+    uint64_t vertex_count;   /* of the mesh: on those edges and in cells, or by the dual methods in cells only */
     uint64_t triangle_count;
     uint32_t centre_count; /* vertices in cells: the last ones */
+    uint32_t fan_count;    /* quads that became fans */
     double sign_seconds;   /* of the seconds that the call took, those that went into the field's signs */
     const hewn_buffer *links, *signs, *edges, *vertex_bases, *triangle_bases;
-    const hewn_buffer *centre_bases, *ranks, *asked; /* of the trilinear interpolant's topology, else NULL */
+    const hewn_buffer *centre_bases, *ranks, *asked;   /* of the trilinear interpolant's topology, else NULL */
+    const hewn_buffer *lower, *loops, *crossing_bases; /* of the dual methods, whose triangle_bases count quads */
 } hewn_surface;
 
 hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct hewn_grid *grid,
                                   const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
                                   hewn_error *error);
+
+/* Parts of that: the signs of the bricks' samples, and their neighbours. */
+void hewn_surface_record_signs(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                               const hewn_surface *surface, hewn_commands *commands);
+void hewn_surface_record_links(const hewn_extractor *extractor, const hewn_bricks *bricks, const hewn_surface *surface,
+                               hewn_commands *commands);
 
 /* Makes what the trilinear interpolant's topology needs, if it is not there yet; and lets go of it. */
 hewn_result hewn_mc33_prepare(hewn_extractor *extractor, hewn_error *error);
@@ -89,9 +106,11 @@ void hewn_mc33_record_centres(const hewn_extractor *extractor, const struct hewn
                               const hewn_surface *surface, const hewn_buffer buffers[3], const hewn_buffer *summary,
                               hewn_commands *commands);
 
-/* What emission adds up. */
+/* What emission adds up; hewn_extract_stats says what it means. */
 typedef struct hewn_emission {
-    uint32_t caps;
+    uint32_t caps;             /* vertices */
+    uint32_t capped_crossings; /* of the surface's */
+    uint32_t edge_vertices, corner_vertices, planes_found, features_lost;
     float max_residual;
 } hewn_emission;
 
@@ -105,13 +124,54 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
 typedef struct hewn_suspects {
     uint64_t cells;
     uint64_t undefined;       /* not among them: cells for which the field has no bounds */
-    uint32_t first[3];        /* of the cells, in the order of the grid, x fastest */
+    uint32_t first[3];        /* of the cells, in the order of the grid, x fastest; its rim does not count */
     const hewn_buffer *marks; /* what they are, as hewn_suspect_push says; freed with the workspace */
 } hewn_suspects;
 
 hewn_result hewn_suspects_find(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                                const hewn_surface *surface, hewn_workspace *workspace, hewn_suspects *out,
                                hewn_error *error);
+/* --- methods with vertices in cells ------------------------------------------------------------------------------- */
+
+/* Makes what such a method needs, if it is not there yet; and lets go of it. */
+hewn_result hewn_dual_prepare(hewn_extractor *extractor, hewn_method method, hewn_error *error);
+void hewn_dual_clear(hewn_extractor *extractor);
+
+/* Takes the place of hewn_surface_classify(). */
+hewn_result hewn_dual_classify(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                               hewn_workspace *workspace, hewn_surface *out, hewn_error *error);
+
+/* What the vertices were made of, in buffers of the workspace. */
+typedef struct hewn_dual_hermite {
+    const hewn_buffer *points, *normals; /* three floats a crossing */
+    const hewn_buffer *records;          /* three words a vertex, see hewn_dual_spread_push */
+    const hewn_buffer *crossings;        /* a quad: number of the crossing on its edge */
+} hewn_dual_hermite;
+
+/* Takes the place of hewn_surface_emit(): writes vertices and quads, two triangles each, into the three buffers. `keep`
+ * is one of HEWN_KEEP_; `kept` may be NULL where it is HEWN_KEEP_NONE. */
+hewn_result hewn_dual_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                           const hewn_surface *surface, hewn_method method, const hewn_buffer buffers[3],
+                           hewn_workspace *workspace, uint32_t keep, hewn_dual_hermite *kept, hewn_emission *out,
+                           hewn_error *error);
+
+/* Makes fans of quads that two triangles cannot cut without perhaps meeting others, if the emission kept what that
+ * needs (HEWN_KEEP_FANS). Where there are any, the buffers are made longer and the surface's counts greater. */
+hewn_result hewn_dual_add_fans(const hewn_extractor *extractor, const hewn_dual_hermite *kept, hewn_surface *surface,
+                               hewn_buffer buffers[3], hewn_workspace *workspace, hewn_error *error);
+
+/* That surface in host memory: arrays of its own, and views of buffers that live as long as the workspace and the
+ * buffers do. Zero is the empty one. */
+typedef struct hewn_dual_reading {
+    hewn_dual_surface surface;
+    uint32_t *cells, *quads;
+    float *residuals, *points, *gradients;
+} hewn_dual_reading;
+
+hewn_result hewn_dual_read(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                           const hewn_surface *surface, const hewn_dual_hermite *kept, const hewn_buffer buffers[3],
+                           hewn_workspace *workspace, hewn_dual_reading *out, hewn_error *error);
+void hewn_dual_reading_clear(hewn_dual_reading *reading);
 
 /* Workgroups of `size` invocations for `count` of them, laid out in two dimensions as shaders/shared/invocation.h reads
  * them. */

@@ -56,7 +56,7 @@ static hewn_result check_precision(const hewn_box *grown, double cell, hewn_erro
 hewn_result hewn_grid_lay(const hewn_extract_desc *desc, struct hewn_grid *out, hewn_box *grown, hewn_error *error)
 {
     double cell = 0;
-    *out = (struct hewn_grid){.open = desc->open ? 1 : 0};
+    *out = (struct hewn_grid){.open = desc->open, .rim = desc->open && hewn_method_is_dual(desc->method)};
     HEWN_TRY(check_bounds(&desc->bounds, error));
     HEWN_TRY(choose_cell(desc, &cell, error));
     for (int axis = 0; axis < 3; axis++) {
@@ -66,7 +66,7 @@ hewn_result hewn_grid_lay(const hewn_extract_desc *desc, struct hewn_grid *out, 
         bool exact = fabs(growth) <= WHOLE_CELL_SLACK * cell;
         grown->lo[axis] = exact ? lo : lo - growth / 2;
         grown->hi[axis] = exact ? hi : hi + growth / 2;
-        out->cells[axis] = (uint32_t)cells;
+        out->cells[axis] = (uint32_t)cells + 2 * out->rim;
         out->origin[axis] = (float)grown->lo[axis];
         out->far[axis] = (float)grown->hi[axis];
     }

@@ -8,8 +8,9 @@
 
 _Static_assert(HEWN_MAX_RESOLUTION <= 8 * 1023, "a brick's coordinate has ten bits");
 
-/* Lays cells over the bounds of `desc`: the other sides grow symmetrically to whole cells. HEWN_INVALID_ARGUMENT where
- * that makes no sense or where floats at the bounds are too coarse to keep the vertices of a cell apart. */
+/* Lays cells over the bounds of `desc`: the other sides grow symmetrically to whole cells. An open one gets a rim for
+ * the dual methods, which counts as cells. HEWN_INVALID_ARGUMENT where that makes no sense or where floats at the
+ * bounds are too coarse to keep the vertices of a cell apart. */
 hewn_result hewn_grid_lay(const hewn_extract_desc *desc, struct hewn_grid *out, hewn_box *grown, hewn_error *error);
 
 /* Bricks along an axis. */

@@ -27,8 +27,8 @@ static hewn_result take_surface(const hewn_bricks *bricks, hewn_workspace *works
     return HEWN_OK;
 }
 
-static void record_signs(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
-                         const hewn_surface *surface, hewn_commands *commands)
+void hewn_surface_record_signs(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                               const hewn_surface *surface, hewn_commands *commands)
 {
     struct hewn_sign_push push = {
         .grid = *grid, .count = bricks->count, .bricks = bricks->list->address, .signs = surface->signs->address};
@@ -36,8 +36,8 @@ static void record_signs(const hewn_extractor *extractor, const struct hewn_grid
                            hewn_groups_for((uint64_t)bricks->count * HEWN_BRICK_WORDS, 64));
 }
 
-static void record_links(const hewn_extractor *extractor, const hewn_bricks *bricks, const hewn_surface *surface,
-                         hewn_commands *commands)
+void hewn_surface_record_links(const hewn_extractor *extractor, const hewn_bricks *bricks, const hewn_surface *surface,
+                               hewn_commands *commands)
 {
     struct hewn_link_push push = {.levels = bricks->levels,
                                   .count = bricks->count,
@@ -78,9 +78,9 @@ hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct 
     double times[2] = {0};
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_mark(commands);
-    record_signs(extractor, grid, bricks, out, commands);
+    hewn_surface_record_signs(extractor, grid, bricks, out, commands);
     hewn_commands_mark(commands);
-    record_links(extractor, bricks, out, commands);
+    hewn_surface_record_links(extractor, bricks, out, commands);
     record_classify(extractor, grid, bricks, out, commands);
     hewn_scan_record(extractor->scan, commands, out->vertex_bases->address, bricks->count, totals->address,
                      scratch->address);
@@ -92,6 +92,7 @@ hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct 
     HEWN_TRY(hewn_scan_check(total, "vertices", error));
     HEWN_TRY(hewn_scan_check(total + 2, "triangles", error));
     out->sign_seconds = times[1];
+    out->crossing_count = total[0];
     out->vertex_count = total[0];
     out->triangle_count = total[2];
     return HEWN_OK;
@@ -128,7 +129,7 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
         hewn_mc33_record_spread(extractor, grid, bricks, surface, buffers, commands);
     else
         record_spread(extractor, grid, bricks, surface, buffers, commands);
-    uint64_t on_edges = surface->vertex_count - surface->centre_count;
+    uint64_t on_edges = surface->crossing_count;
     struct hewn_vertex_push vertices = {.grid = *grid,
                                         .count = (uint32_t)on_edges,
                                         .bricks = bricks->list->address,
@@ -147,7 +148,7 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
     hewn_commands_copy(commands, summary, 0, results, 0, summary->size);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
     const uint32_t *words = results->mapped;
-    out->caps = words[HEWN_SUMMARY_CAPS];
+    *out = (hewn_emission){.caps = words[HEWN_SUMMARY_CAPS], .capped_crossings = words[HEWN_SUMMARY_CAPS]};
     memcpy(&out->max_residual, &words[HEWN_SUMMARY_RESIDUAL], sizeof out->max_residual);
     return HEWN_OK;
 }

@@ -141,5 +141,9 @@ hewn_result hewn_suspects_find(const hewn_extractor *extractor, const struct hew
     out->marks = run.marks;
     out->cells = words[HEWN_SUSPECT_CELLS] | (uint64_t)words[HEWN_SUSPECT_CELLS + 1] << 32;
     out->undefined = words[HEWN_SUSPECT_UNDEFINED] | (uint64_t)words[HEWN_SUSPECT_UNDEFINED + 1] << 32;
-    return out->cells > 0 ? find_first(bricks, workspace, out, error) : HEWN_OK;
+    if (out->cells > 0)
+        HEWN_TRY(find_first(bricks, workspace, out, error));
+    for (int axis = 0; axis < 3 && out->cells > 0; axis++)
+        out->first[axis] -= grid->rim;
+    return HEWN_OK;
 }

@@ -35,6 +35,26 @@ static double seconds_since(double began)
 
 /* --- before any work --------------------------------------------------------------------------------------------- */
 
+static hewn_result check_faces(const mesh_job *job, hewn_error *error)
+{
+    const hewn_mesh_job_desc *desc = job->desc;
+    const char *method = hewn_method_name(desc->method);
+    if (!isfinite(desc->adaptive) || desc->adaptive < 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", desc->adaptive);
+    if (desc->adaptive > 0 && desc->quads)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "merged faces are triangles, not quads");
+    if (desc->adaptive > 0 && (!method || strcmp(method, hewn_method_name(HEWN_METHOD_DC)) != 0))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "only the triangles of dc can be merged, not those of %s",
+                         method);
+    if (desc->quads && !hewn_method_is_dual(desc->method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the method %s makes triangles; nets and dc make quads", method);
+    if (desc->quads && !hewn_mesh_format_has_polygons(job->format))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "%s files hold triangles only; quads can go to .obj, .off and .ply",
+                         hewn_mesh_format_name(job->format));
+    return HEWN_OK;
+}
+
 static hewn_result check(mesh_job *job, hewn_error *error)
 {
     const hewn_mesh_job_desc *desc = job->desc;
@@ -50,6 +70,7 @@ static hewn_result check(mesh_job *job, hewn_error *error)
     if (desc->bounds)
         HEWN_TRY(hewn_domain_check(desc->bounds, error));
     HEWN_TRY(hewn_output_format(desc->output, desc->format, &job->format, error));
+    HEWN_TRY(check_faces(job, error));
     if (desc->report && strcmp(desc->report, desc->output) == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
                          strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
@@ -80,8 +101,9 @@ static hewn_result describe_request(mesh_job *job, hewn_error *error)
     if (!report->input || !report->output)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the report");
     report->format = job->format;
-    report->method = desc->method;
     report->open = desc->open;
+    report->quads = desc->quads;
+    report->adaptive = desc->adaptive;
     report->threads = desc->threads;
     report->resolution = desc->resolution || desc->cell > 0 ? desc->resolution : HEWN_DEFAULT_RESOLUTION;
     return HEWN_OK;
@@ -123,11 +145,14 @@ static hewn_result extract(mesh_job *job, const hewn_box *bounds, hewn_error *er
         .cell = desc->cell,
         .method = desc->method,
         .open = desc->open,
+        .quads = desc->quads,
+        .adaptive = desc->adaptive,
         .progress = desc->progress,
     };
     hewn_extract_stats *stats = &job->report->extraction;
     double begin = seconds_since(job->began);
     HEWN_TRY(hewn_extract(job->kept->extractor, &extract_desc, &job->triangles, stats, error));
+    job->report->method = stats->method;
     for (uint32_t i = 0; i < stats->stage_count; ++i)
         hewn_report_add_stage(job->report, stats->stages[i].name, begin + stats->stages[i].begin,
                               begin + stats->stages[i].end);
@@ -143,7 +168,7 @@ static hewn_result certify(mesh_job *job, hewn_error *error)
     HEWN_TRY(hewn_certify(&job->triangles, job->desc->progress, certificate, error));
     certificate->max_residual = job->report->extraction.max_residual;
     job->report->vertices = job->triangles.vertex_count;
-    job->report->faces = job->triangles.triangle_count;
+    job->report->faces = job->triangles.triangle_count / (job->desc->quads ? 2 : 1);
     hewn_report_add_stage(job->report, "certify", begin, seconds_since(job->began));
     if ((certificate->closed || job->desc->open) && certificate->manifold && certificate->oriented)
         return HEWN_OK;
@@ -167,6 +192,7 @@ static hewn_result write_mesh(mesh_job *job, hewn_error *error)
         .name = strcmp(desc->output, "-") == 0 ? name : NULL,
         .unit = hewn_scene_unit(job->scene),
         .up = hewn_scene_up(job->scene),
+        .quads = desc->quads,
         .progress = desc->progress,
     };
     HEWN_TRY(hewn_triangles_write(&job->triangles, desc->output, &write_desc, error));

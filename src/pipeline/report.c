@@ -113,8 +113,13 @@ static void print_request(hewn_json *json, const hewn_report *report)
     hewn_json_string(json, "units", report->units);
     hewn_json_string(json, "output", report->output);
     hewn_json_string(json, "format", hewn_mesh_format_name(report->format));
-    hewn_json_string(json, "method", report->method == HEWN_METHOD_MC33 ? "mc33" : "mc");
+    hewn_json_string(json, "method", hewn_method_name(report->method));
     hewn_json_bool(json, "open", report->open);
+    hewn_json_bool(json, "quads", report->quads);
+    if (report->adaptive > 0)
+        hewn_json_number(json, "adaptive", report->adaptive);
+    else
+        hewn_json_string(json, "adaptive", NULL);
     if (report->resolution)
         hewn_json_unsigned(json, "resolution", report->resolution);
     else
@@ -147,6 +152,24 @@ static void print_extraction(hewn_json *json, const hewn_report *report)
     else
         hewn_json_string(json, "first_suspect", NULL);
     hewn_json_unsigned(json, "undefined_cells", stats->undefined_cells);
+    if (hewn_method_is_dual(report->method))
+        hewn_json_unsigned(json, "fans", stats->fans);
+    if (report->method == HEWN_METHOD_DC) {
+        hewn_json_object(json, "features");
+        hewn_json_unsigned(json, "edge_vertices", stats->edge_vertices);
+        hewn_json_unsigned(json, "corner_vertices", stats->corner_vertices);
+        hewn_json_unsigned(json, "planes_found", stats->planes_found);
+        hewn_json_unsigned(json, "lost", stats->features_lost);
+        hewn_json_end_object(json);
+    }
+    if (report->adaptive > 0) {
+        hewn_json_object(json, "merged");
+        hewn_json_unsigned(json, "uniform_vertices", stats->uniform_vertices);
+        hewn_json_unsigned(json, "uniform_faces", stats->uniform_triangles);
+        hewn_json_unsigned(json, "octree_merges", stats->octree_merges);
+        hewn_json_unsigned(json, "pair_merges", stats->pair_merges);
+        hewn_json_end_object(json);
+    }
     hewn_json_unsigned(json, "validation_messages", report->validation_messages);
 }
 

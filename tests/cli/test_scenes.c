@@ -18,10 +18,10 @@ static char *mesh_scene(const char *folder, const char *scene, const char *name,
     return run_read_file(run_path(folder, "report.json"), NULL);
 }
 
-/* The same with the topology of the trilinear interpolant. */
-static char *mesh_scene_connected(const char *folder, const char *scene)
+/* The same by a method of that name. */
+static char *mesh_scene_by(const char *method, const char *folder, const char *scene)
 {
-    run_desc desc = {.arguments = {"mesh", scene, "-o", "scene.glb", "--res", "64", "--method", "mc33", "--report",
+    run_desc desc = {.arguments = {"mesh", scene, "-o", "scene.glb", "--res", "64", "--method", method, "--report",
                                    "report.json", "-q"},
                      .folder = folder,
                      .timeout = 240};
@@ -55,10 +55,14 @@ static void test_shipped_scenes(void **state)
         assert_false(json_bool(report, "left_bounds"));
         assert_true(json_number(report, "suspect_cells") == 0);
         assert_true(json_number(report, "undefined_cells") == 0);
-        free(report);
-        report = mesh_scene_connected(folder, run_path(scenes, entry->d_name));
-        assert_proven(report, entry->d_name);
-        assert_non_null(strstr(report, "\"mc33\""));
+        static const char *const others[] = {"mc", "mc33", "nets"};
+        assert_string_equal(json_string(report, "method"), "dc");
+        for (int i = 0; i < 3; i++) {
+            free(report);
+            report = mesh_scene_by(others[i], folder, run_path(scenes, entry->d_name));
+            assert_proven(report, entry->d_name);
+            assert_string_equal(json_string(report, "method"), others[i]);
+        }
         free(report);
         count++;
     }

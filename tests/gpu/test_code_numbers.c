@@ -32,7 +32,8 @@ static hewn_extractor *make_extractor(hewn_device *device, const scene *from, he
 
 static hewn_triangles mesh_with(hewn_extractor *extractor)
 {
-    const hewn_extract_desc desc = {.bounds = {{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}}, .resolution = 72};
+    const hewn_extract_desc desc = {
+        .bounds = {{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}}, .resolution = 72, .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_triangles triangles;
     GPU_TEST_TRY(hewn_extract(extractor, &desc, &triangles, NULL, &error));
     assert_true(triangles.vertex_count > 1000);

@@ -250,7 +250,8 @@ static const hewn_box unit_cube = {{-1, -1, -1}, {1, 1, 1}};
 static void check_field(maker *make, uint32_t resolution, bool open)
 {
     subject made = make_subject(make);
-    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = resolution, .open = open};
+    hewn_extract_desc desc = {
+        .bounds = unit_cube, .resolution = resolution, .open = open, .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_extract_stats stats;
     hewn_triangles mesh = extract(&made, &desc, &stats);
     hewn_certificate certificate = certify(&mesh);
@@ -285,7 +286,7 @@ static void test_several_levels_of_culling(void **state)
 {
     (void)state;
     subject made = make_subject(make_melted);
-    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 150};
+    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 150, .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_extract_stats stats;
     hewn_triangles mesh = extract(&made, &desc, &stats);
     compare_with_twin(&made, &desc, &mesh);
@@ -298,7 +299,7 @@ static void test_several_levels_of_culling(void **state)
 static void check_vertices(maker *make, uint32_t resolution, double residual)
 {
     subject made = make_subject(make);
-    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = resolution};
+    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = resolution, .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_extract_stats stats;
     hewn_triangles mesh = extract(&made, &desc, &stats);
     if (!((double)stats.max_residual <= residual))
@@ -338,7 +339,7 @@ static void test_crossings_are_solved_not_interpolated(void **state)
 {
     (void)state;
     subject made = make_subject(make_sphere);
-    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 12};
+    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 12, .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_triangles mesh = extract(&made, &desc, NULL);
     for (uint64_t i = 0; i < mesh.vertex_count; i++) {
         const float *at = mesh.positions + 3 * i;
@@ -360,7 +361,7 @@ static void test_normals_are_gradients(void **state)
 {
     (void)state;
     subject made = make_subject(make_sphere);
-    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 64};
+    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 64, .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_triangles mesh = extract(&made, &desc, NULL);
     for (uint64_t i = 0; i < 3 * mesh.vertex_count; i++)
         assert_true(fabsf(mesh.normals[i] - mesh.positions[i] / 0.8f) < 1e-4f);
@@ -374,7 +375,7 @@ static void test_volume_converges_by_the_square(void **state)
     double exact = 4.0 / 3.0 * 3.14159265358979323846 * 0.8 * 0.8 * 0.8, error[3];
     subject made = make_subject(make_sphere);
     for (uint32_t i = 0; i < 3; i++) {
-        hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 32u << i};
+        hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 32u << i, .method = HEWN_METHOD_MARCHING_CUBES};
         hewn_triangles mesh = extract(&made, &desc, NULL);
         hewn_certificate certificate = certify(&mesh);
         assert_true(certificate.closed && certificate.genus == 0 && certificate.components == 1);
@@ -390,7 +391,8 @@ static void test_caps_lie_on_grown_bounds(void **state)
 {
     (void)state;
     subject made = make_subject(make_half_space);
-    hewn_extract_desc desc = {.bounds = {{-1, -0.5, -0.33}, {1, 0.51, 0.4}}, .resolution = 20};
+    hewn_extract_desc desc = {
+        .bounds = {{-1, -0.5, -0.33}, {1, 0.51, 0.4}}, .resolution = 20, .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_extract_stats stats;
     hewn_triangles mesh = extract(&made, &desc, &stats);
     assert_true(stats.left_bounds);
@@ -410,7 +412,7 @@ static void test_same_bytes_every_time(void **state)
 {
     (void)state;
     subject made = make_subject(make_melted), again = make_subject(make_melted);
-    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 60};
+    hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 60, .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_triangles first = extract(&made, &desc, NULL);
     for (int i = 0; i < 3; i++) {
         hewn_triangles next = extract(i == 2 ? &again : &made, &desc, NULL);
@@ -490,10 +492,11 @@ static void test_cancel_at_every_stage(void **state)
 {
     (void)state;
     subject made = make_subject(make_sphere);
-    for (int stages = 0; stages < 4; stages++) {
+    for (int stages = 0; stages < 5; stages++) {
         countdown counter = {stages};
         hewn_progress progress = {count_down, &counter};
-        hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 32, .progress = &progress};
+        hewn_extract_desc desc = {
+            .bounds = unit_cube, .resolution = 32, .progress = &progress, .method = HEWN_METHOD_MARCHING_CUBES};
         hewn_error error = {0};
         hewn_triangles mesh;
         assert_int_equal(hewn_extract(made.extractor, &desc, &mesh, NULL, &error), HEWN_CANCELLED);

@@ -9,7 +9,7 @@
 #include "hewn/hewn.h"
 
 /* All methods: what is tested here must hold for each. */
-static const hewn_method methods[] = {HEWN_METHOD_MARCHING_CUBES, HEWN_METHOD_MC33};
+static const hewn_method methods[] = {HEWN_METHOD_MARCHING_CUBES, HEWN_METHOD_MC33, HEWN_METHOD_NETS, HEWN_METHOD_DC};
 enum { METHODS = sizeof methods / sizeof *methods };
 
 static hewn_device *device;

@@ -31,7 +31,7 @@ typedef struct member {
 #define GRID(type)                                                                                                     \
     MEMBER(type, grid.origin[0], REAL), MEMBER(type, grid.origin[2], REAL), MEMBER(type, grid.far[0], REAL),           \
         MEMBER(type, grid.far[2], REAL), MEMBER(type, grid.cell, REAL), MEMBER(type, grid.cells[0], NUMBER),           \
-        MEMBER(type, grid.cells[2], NUMBER), MEMBER(type, grid.open, NUMBER)
+        MEMBER(type, grid.cells[2], NUMBER), MEMBER(type, grid.open, NUMBER), MEMBER(type, grid.rim, NUMBER)
 
 static hewn_device *device;
 
@@ -109,8 +109,9 @@ static void test_field_kernels(void **state)
     CHECK(hewn_sign_push, GRID(hewn_sign_push), MEMBER(hewn_sign_push, count, NUMBER),
           MEMBER(hewn_sign_push, bricks, ADDRESS), MEMBER(hewn_sign_push, signs, ADDRESS));
     CHECK(hewn_vertex_push, GRID(hewn_vertex_push), MEMBER(hewn_vertex_push, count, NUMBER),
-          MEMBER(hewn_vertex_push, bricks, ADDRESS), MEMBER(hewn_vertex_push, positions, ADDRESS),
-          MEMBER(hewn_vertex_push, normals, ADDRESS), MEMBER(hewn_vertex_push, summary, ADDRESS));
+          MEMBER(hewn_vertex_push, dual, NUMBER), MEMBER(hewn_vertex_push, bricks, ADDRESS),
+          MEMBER(hewn_vertex_push, positions, ADDRESS), MEMBER(hewn_vertex_push, normals, ADDRESS),
+          MEMBER(hewn_vertex_push, summary, ADDRESS));
 }
 
 static void test_fixed_kernels(void **state)
@@ -177,12 +178,44 @@ static void test_suspect_kernels(void **state)
           MEMBER(hewn_suspect_push, counts, ADDRESS));
 }
 
+#define A(type, name) MEMBER(type, name, ADDRESS)
+#define N(type, name) MEMBER(type, name, NUMBER)
+
+static void test_dual_kernels(void **state)
+{
+    (void)state;
+    CHECK(hewn_dual_link_push, N(hewn_dual_link_push, count), A(hewn_dual_link_push, links),
+          A(hewn_dual_link_push, lower));
+    CHECK(hewn_dual_classify_push, N(hewn_dual_classify_push, cells[0]), N(hewn_dual_classify_push, cells[2]),
+          N(hewn_dual_classify_push, count), A(hewn_dual_classify_push, bricks), A(hewn_dual_classify_push, links),
+          A(hewn_dual_classify_push, lower), A(hewn_dual_classify_push, signs), A(hewn_dual_classify_push, edges),
+          A(hewn_dual_classify_push, loops), A(hewn_dual_classify_push, crossing_counts),
+          A(hewn_dual_classify_push, vertex_counts), A(hewn_dual_classify_push, quad_counts));
+    CHECK(hewn_dual_spread_push, N(hewn_dual_spread_push, cells[0]), N(hewn_dual_spread_push, cells[2]),
+          N(hewn_dual_spread_push, count), A(hewn_dual_spread_push, bricks), A(hewn_dual_spread_push, links),
+          A(hewn_dual_spread_push, signs), A(hewn_dual_spread_push, edges), A(hewn_dual_spread_push, loops),
+          A(hewn_dual_spread_push, crossing_bases), A(hewn_dual_spread_push, vertex_bases),
+          A(hewn_dual_spread_push, quad_bases), A(hewn_dual_spread_push, points), A(hewn_dual_spread_push, positions),
+          A(hewn_dual_spread_push, passed), A(hewn_dual_spread_push, indices));
+    CHECK(hewn_dual_vertex_push, GRID(hewn_dual_vertex_push), N(hewn_dual_vertex_push, count),
+          A(hewn_dual_vertex_push, bricks), A(hewn_dual_vertex_push, links), A(hewn_dual_vertex_push, edges),
+          A(hewn_dual_vertex_push, points), A(hewn_dual_vertex_push, point_normals),
+          A(hewn_dual_vertex_push, positions), A(hewn_dual_vertex_push, normals), A(hewn_dual_vertex_push, summary));
+    CHECK(hewn_dual_quad_push, GRID(hewn_dual_quad_push), N(hewn_dual_quad_push, count), N(hewn_dual_quad_push, keep),
+          A(hewn_dual_quad_push, bricks), A(hewn_dual_quad_push, links), A(hewn_dual_quad_push, passed),
+          A(hewn_dual_quad_push, edges), A(hewn_dual_quad_push, loops), A(hewn_dual_quad_push, points),
+          A(hewn_dual_quad_push, positions), A(hewn_dual_quad_push, indices), A(hewn_dual_quad_push, crossings));
+    CHECK(hewn_dual_fan_push, N(hewn_dual_fan_push, count), N(hewn_dual_fan_push, makes),
+          N(hewn_dual_fan_push, vertices), A(hewn_dual_fan_push, crossings), A(hewn_dual_fan_push, ranks),
+          A(hewn_dual_fan_push, points), A(hewn_dual_fan_push, point_normals), A(hewn_dual_fan_push, positions),
+          A(hewn_dual_fan_push, normals), A(hewn_dual_fan_push, indices));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_field_kernels),
-        cmocka_unit_test(test_fixed_kernels),
-        cmocka_unit_test(test_trilinear_kernels),
+        cmocka_unit_test(test_field_kernels),     cmocka_unit_test(test_fixed_kernels),
+        cmocka_unit_test(test_trilinear_kernels), cmocka_unit_test(test_dual_kernels),
         cmocka_unit_test(test_suspect_kernels),
     };
     return cmocka_run_group_tests_name("layout", tests, open_device, close_device);

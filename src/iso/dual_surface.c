@@ -1,0 +1,335 @@
+/* The stages of the methods whose vertices lie in cells: loops and quads are counted, crossings are solved into scratch
+ * memory, then every vertex and quad goes to its place. */
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "iso/dual_cells.h"
+#include "iso/extractor.h"
+
+extern const char hewn_text_iso_head[], hewn_text_nets_vertices[], hewn_text_dual_vertices[];
+
+#define HEWN_SHADER(name)                                                                                              \
+    extern const unsigned char hewn_shader_##name[];                                                                   \
+    extern const size_t hewn_shader_##name##_size;
+HEWN_SHADER(dual_link)
+HEWN_SHADER(dual_classify)
+HEWN_SHADER(dual_spread)
+HEWN_SHADER(dual_quads)
+HEWN_SHADER(dual_fans)
+#undef HEWN_SHADER
+
+/* --- programs ----------------------------------------------------------------------------------------------------- */
+
+static hewn_result create_table(hewn_extractor *extractor, hewn_error *error)
+{
+    hewn_dual_table table;
+    hewn_dual_table_derive(&table);
+    HEWN_TRY(hewn_buffer_create(extractor->device, "table of loops", sizeof table, HEWN_BUFFER_UPLOAD,
+                                &extractor->dual.table, error));
+    memcpy(extractor->dual.table.mapped, &table, sizeof table);
+    return HEWN_OK;
+}
+
+static hewn_result create_fixed(hewn_extractor *extractor, hewn_error *error)
+{
+    hewn_dual_programs *own = &extractor->dual;
+    const struct {
+        const char *name;
+        const unsigned char *spirv;
+        size_t bytes, push;
+        bool table;
+        hewn_program **place;
+    } kernels[] = {
+        {"dual_link", hewn_shader_dual_link, hewn_shader_dual_link_size, sizeof(struct hewn_dual_link_push), false,
+         &own->link},
+        {"dual_classify", hewn_shader_dual_classify, hewn_shader_dual_classify_size,
+         sizeof(struct hewn_dual_classify_push), true, &own->classify},
+        {"dual_spread", hewn_shader_dual_spread, hewn_shader_dual_spread_size, sizeof(struct hewn_dual_spread_push),
+         true, &own->spread},
+        {"dual_quads", hewn_shader_dual_quads, hewn_shader_dual_quads_size, sizeof(struct hewn_dual_quad_push), false,
+         &own->quads},
+        {"dual_fans", hewn_shader_dual_fans, hewn_shader_dual_fans_size, sizeof(struct hewn_dual_fan_push), false,
+         &own->fans},
+    };
+    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
+        hewn_program_desc desc = {.name = kernels[i].name,
+                                  .spirv = (const uint32_t *)(const void *)kernels[i].spirv,
+                                  .spirv_bytes = kernels[i].bytes,
+                                  .push_bytes = (uint32_t)kernels[i].push,
+                                  .uniforms = kernels[i].table};
+        HEWN_TRY(hewn_program_create(extractor->device, &desc, kernels[i].place, error));
+    }
+    return HEWN_OK;
+}
+
+static hewn_program **vertex_program(hewn_dual_programs *own, hewn_method method)
+{
+    return method == HEWN_METHOD_NETS ? &own->nets : &own->dc;
+}
+
+static hewn_result create_vertices(hewn_extractor *extractor, hewn_method method, hewn_error *error)
+{
+    size_t bytes = sizeof(struct hewn_dual_vertex_push);
+    hewn_kernel_desc nets = {"nets_vertices", hewn_text_iso_head, hewn_text_nets_vertices, HEWN_FLAVOUR_GRADIENT,
+                             (uint32_t)bytes};
+    hewn_kernel_desc dc = {"dual_vertices", hewn_text_iso_head, hewn_text_dual_vertices,
+                           HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT, (uint32_t)bytes};
+    return hewn_code_program(extractor->device, extractor->code, method == HEWN_METHOD_NETS ? &nets : &dc,
+                             vertex_program(&extractor->dual, method), error);
+}
+
+hewn_result hewn_dual_prepare(hewn_extractor *extractor, hewn_method method, hewn_error *error)
+{
+    hewn_result result = HEWN_OK;
+    if (!extractor->dual.fans) {
+        result = create_table(extractor, error);
+        if (result == HEWN_OK)
+            result = create_fixed(extractor, error);
+        if (result != HEWN_OK)
+            hewn_dual_clear(extractor);
+    }
+    if (result == HEWN_OK && !*vertex_program(&extractor->dual, method))
+        result = create_vertices(extractor, method, error);
+    return result;
+}
+
+void hewn_dual_clear(hewn_extractor *extractor)
+{
+    hewn_dual_programs *own = &extractor->dual;
+    hewn_program **programs[] = {&own->link, &own->classify, &own->spread, &own->quads,
+                                 &own->fans, &own->nets,     &own->dc};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        hewn_program_destroy(extractor->device, programs[i]);
+    hewn_buffer_destroy(extractor->device, &own->table);
+}
+
+/* --- counting ----------------------------------------------------------------------------------------------------- */
+
+static hewn_result take_surface(const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
+                                hewn_error *error)
+{
+    const struct {
+        const char *what;
+        uint32_t words;
+        const hewn_buffer **place;
+    } wanted[] = {
+        {"neighbours of bricks", HEWN_BRICK_LINKS, &out->links},
+        {"lower neighbours of bricks", 3, &out->lower},
+        {"signs of samples", HEWN_BRICK_WORDS, &out->signs},
+        {"crossed edges", 2 * HEWN_BRICK_EDGE_WORDS, &out->edges},
+        {"loops of cells", HEWN_BRICK_DUAL_WORDS, &out->loops},
+        {"crossings a brick", 1, &out->crossing_bases},
+        {"vertices a brick", 1, &out->vertex_bases},
+        {"quads a brick", 1, &out->triangle_bases},
+    };
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        hewn_buffer *taken;
+        HEWN_TRY(hewn_workspace_take(workspace, wanted[i].what, (uint64_t)4 * wanted[i].words * bricks->count,
+                                     HEWN_BUFFER_DEVICE, &taken, error));
+        *wanted[i].place = taken;
+    }
+    return HEWN_OK;
+}
+
+static void record_classify(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                            const hewn_surface *surface, hewn_commands *commands)
+{
+    struct hewn_dual_link_push link = {
+        .count = bricks->count, .links = surface->links->address, .lower = surface->lower->address};
+    hewn_commands_fill(commands, surface->lower, 0, surface->lower->size, HEWN_ALL_OUTSIDE);
+    hewn_commands_dispatch(commands, extractor->dual.link, &link, NULL,
+                           hewn_groups_for((uint64_t)3 * bricks->count, 64));
+    struct hewn_dual_classify_push classify = {.count = bricks->count,
+                                               .bricks = bricks->list->address,
+                                               .links = surface->links->address,
+                                               .lower = surface->lower->address,
+                                               .signs = surface->signs->address,
+                                               .edges = surface->edges->address,
+                                               .loops = surface->loops->address,
+                                               .crossing_counts = surface->crossing_bases->address,
+                                               .vertex_counts = surface->vertex_bases->address,
+                                               .quad_counts = surface->triangle_bases->address};
+    memcpy(classify.cells, grid->cells, sizeof classify.cells);
+    hewn_commands_dispatch(commands, extractor->dual.classify, &classify, &extractor->dual.table,
+                           hewn_groups_for(bricks->count, 32));
+}
+
+/* What the sums say; two triangles a quad. */
+static hewn_result take_totals(const uint32_t totals[6], hewn_surface *out, hewn_error *error)
+{
+    uint64_t triangles = 2 * ((uint64_t)totals[5] << 32 | totals[4]);
+    uint32_t pair[2] = {(uint32_t)triangles, (uint32_t)(triangles >> 32)};
+    HEWN_TRY(hewn_scan_check(totals, "crossings", error));
+    HEWN_TRY(hewn_scan_check(totals + 2, "vertices", error));
+    HEWN_TRY(hewn_scan_check(pair, "triangles", error));
+    out->crossing_count = totals[0];
+    out->vertex_count = totals[2];
+    out->triangle_count = triangles;
+    return HEWN_OK;
+}
+
+hewn_result hewn_dual_classify(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                               hewn_workspace *workspace, hewn_surface *out, hewn_error *error)
+{
+    hewn_buffer *totals, *results, *scratch;
+    HEWN_TRY(take_surface(bricks, workspace, out, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 24, HEWN_BUFFER_DEVICE, &totals, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 24, HEWN_BUFFER_READBACK, &results, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "scratch of sums", hewn_scan_scratch_bytes(bricks->count),
+                                 HEWN_BUFFER_DEVICE, &scratch, error));
+    const hewn_buffer *counts[] = {out->crossing_bases, out->vertex_bases, out->triangle_bases};
+    hewn_commands *commands;
+    double times[2] = {0};
+    HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
+    hewn_commands_mark(commands);
+    hewn_surface_record_signs(extractor, grid, bricks, out, commands);
+    hewn_commands_mark(commands);
+    hewn_surface_record_links(extractor, bricks, out, commands);
+    record_classify(extractor, grid, bricks, out, commands);
+    for (uint32_t i = 0; i < 3; i++)
+        hewn_scan_record(extractor->scan, commands, counts[i]->address, bricks->count,
+                         totals->address + (uint64_t)8 * i, scratch->address);
+    hewn_commands_copy(commands, totals, 0, results, 0, 24);
+    HEWN_TRY(hewn_commands_submit(&commands, times, error));
+    out->sign_seconds = times[1];
+    return take_totals(results->mapped, out, error);
+}
+
+/* --- emission ----------------------------------------------------------------------------------------------------- */
+
+typedef struct emission {
+    const hewn_extractor *extractor;
+    const struct hewn_grid *grid;
+    const hewn_bricks *bricks;
+    const hewn_surface *surface;
+    const hewn_buffer *buffers;      /* positions, normals, indices */
+    hewn_buffer *points, *normals;   /* of crossings */
+    hewn_buffer *passed;             /* edges that each vertex's loop passes */
+    hewn_buffer *summary, *results;  /* the mesh's; behind it that of the crossings */
+    hewn_buffer *records, *crossing; /* of vertices, of quads: where they are kept */
+} emission;
+
+static hewn_result take_emission(emission *run, uint32_t keep, hewn_workspace *workspace, hewn_error *error)
+{
+    uint64_t points = 12 * run->surface->crossing_count, quads = run->surface->triangle_count / 2;
+    uint64_t summary = (uint64_t)2 * 4 * HEWN_SUMMARY_WORDS;
+    const struct {
+        const char *what;
+        uint64_t bytes;
+        hewn_buffer **place;
+    } wanted[] = {
+        {"crossings", points, &run->points},
+        {"normals of crossings", points, &run->normals},
+        {"edges of loops", 4 * run->surface->vertex_count, &run->passed},
+        {"summary", summary, &run->summary},
+        {"records of vertices", keep == HEWN_KEEP_ALL ? run->buffers[0].size : 4, &run->records},
+        {"crossings of quads", keep != HEWN_KEEP_NONE ? 4 * quads : 4, &run->crossing},
+    };
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+        HEWN_TRY(hewn_workspace_take(workspace, wanted[i].what, wanted[i].bytes, HEWN_BUFFER_DEVICE, wanted[i].place,
+                                     error));
+    return hewn_workspace_take(workspace, "summary", summary, HEWN_BUFFER_READBACK, &run->results, error);
+}
+
+static void record_spread(const emission *run, hewn_commands *commands)
+{
+    const hewn_surface *surface = run->surface;
+    struct hewn_dual_spread_push push = {.count = run->bricks->count,
+                                         .bricks = run->bricks->list->address,
+                                         .links = surface->links->address,
+                                         .signs = surface->signs->address,
+                                         .edges = surface->edges->address,
+                                         .loops = surface->loops->address,
+                                         .crossing_bases = surface->crossing_bases->address,
+                                         .vertex_bases = surface->vertex_bases->address,
+                                         .quad_bases = surface->triangle_bases->address,
+                                         .points = run->points->address,
+                                         .positions = run->buffers[0].address,
+                                         .passed = run->passed->address,
+                                         .indices = run->buffers[2].address};
+    memcpy(push.cells, run->grid->cells, sizeof push.cells);
+    hewn_commands_dispatch(commands, run->extractor->dual.spread, &push, &run->extractor->dual.table,
+                           hewn_groups_for(run->bricks->count, 32));
+}
+
+static void record_vertices(const emission *run, hewn_method method, hewn_commands *commands)
+{
+    const hewn_surface *surface = run->surface;
+    const hewn_buffer *uniforms = hewn_code_uniforms(run->extractor->code);
+    struct hewn_vertex_push crossings = {.grid = *run->grid,
+                                         .count = (uint32_t)surface->crossing_count,
+                                         .dual = 1,
+                                         .bricks = run->bricks->list->address,
+                                         .positions = run->points->address,
+                                         .normals = run->normals->address,
+                                         .summary = run->summary->address + (uint64_t)4 * HEWN_SUMMARY_WORDS};
+    hewn_commands_dispatch(commands, run->extractor->vertices, &crossings, uniforms,
+                           hewn_groups_for(surface->crossing_count, 64));
+    struct hewn_dual_vertex_push vertices = {.grid = *run->grid,
+                                             .count = (uint32_t)surface->vertex_count,
+                                             .bricks = run->bricks->list->address,
+                                             .links = surface->links->address,
+                                             .edges = surface->edges->address,
+                                             .points = run->points->address,
+                                             .point_normals = run->normals->address,
+                                             .positions = run->buffers[0].address,
+                                             .normals = run->buffers[1].address,
+                                             .summary = run->summary->address};
+    const hewn_dual_programs *programs = &run->extractor->dual;
+    hewn_commands_dispatch(commands, method == HEWN_METHOD_NETS ? programs->nets : programs->dc, &vertices, uniforms,
+                           hewn_groups_for(surface->vertex_count, 64));
+}
+
+static void record_quads(const emission *run, uint32_t keep, hewn_commands *commands)
+{
+    const hewn_surface *surface = run->surface;
+    uint64_t quads = surface->triangle_count / 2;
+    struct hewn_dual_quad_push push = {.grid = *run->grid,
+                                       .count = (uint32_t)quads,
+                                       .keep = keep,
+                                       .bricks = run->bricks->list->address,
+                                       .links = surface->links->address,
+                                       .edges = surface->edges->address,
+                                       .loops = surface->loops->address,
+                                       .passed = run->passed->address,
+                                       .points = run->points->address,
+                                       .positions = run->buffers[0].address,
+                                       .indices = run->buffers[2].address,
+                                       .crossings = run->crossing->address};
+    hewn_commands_dispatch(commands, run->extractor->dual.quads, &push, NULL, hewn_groups_for(quads, 64));
+}
+
+static void read_summary(const uint32_t *words, hewn_emission *out)
+{
+    out->caps = words[HEWN_SUMMARY_CAPS];
+    out->edge_vertices = words[HEWN_SUMMARY_EDGES];
+    out->corner_vertices = words[HEWN_SUMMARY_CORNERS];
+    out->planes_found = words[HEWN_SUMMARY_PLANES];
+    out->features_lost = words[HEWN_SUMMARY_LOST];
+    memcpy(&out->max_residual, &words[HEWN_SUMMARY_RESIDUAL], sizeof out->max_residual);
+    out->capped_crossings = words[HEWN_SUMMARY_WORDS + HEWN_SUMMARY_CAPS];
+}
+
+hewn_result hewn_dual_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                           const hewn_surface *surface, hewn_method method, const hewn_buffer buffers[3],
+                           hewn_workspace *workspace, uint32_t keep, hewn_dual_hermite *kept, hewn_emission *out,
+                           hewn_error *error)
+{
+    emission run = {.extractor = extractor, .grid = grid, .bricks = bricks, .surface = surface, .buffers = buffers};
+    hewn_commands *commands;
+    HEWN_TRY(take_emission(&run, keep, workspace, error));
+    HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
+    hewn_commands_fill(commands, run.summary, 0, run.summary->size, 0);
+    record_spread(&run, commands);
+    if (keep == HEWN_KEEP_ALL)
+        hewn_commands_copy(commands, &buffers[0], 0, run.records, 0, buffers[0].size);
+    record_vertices(&run, method, commands);
+    record_quads(&run, keep, commands);
+    hewn_commands_copy(commands, run.summary, 0, run.results, 0, run.summary->size);
+    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    read_summary(run.results->mapped, out);
+    if (keep != HEWN_KEEP_NONE)
+        *kept = (hewn_dual_hermite){run.points, run.normals, run.records, run.crossing};
+    return HEWN_OK;
+}
