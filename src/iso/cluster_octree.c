@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "iso/cluster_passes.h"
 
-enum { COLOURS = 27, MOST_LEVELS = 21 };
+enum { COLOURS = 27, MOST_LEVELS = 21, WORTH_A_TEAM = 48 };
 
 /* The clusters of a node: a stretch of the list of all. */
 typedef struct node {
@@ -156,7 +156,9 @@ static hewn_result merge_level(octree *tree, hewn_error *error)
     list_nodes(tree);
     for (int colour = 0; colour < COLOURS; colour++) {
         uint32_t end = tree->colour_ends[colour];
-#pragma omp parallel for schedule(dynamic, 16) reduction(|| : failed) num_threads(tree->worker_count)
+#pragma omp parallel for schedule(dynamic, 16) reduction(||                                                            \
+                                                         : failed)                                                     \
+    num_threads(tree->worker_count) if (end - begin >= WORTH_A_TEAM)
         for (uint32_t i = begin; i < end; i++)
             failed = failed || !merge_node(tree, &tree->workers[omp_get_thread_num()], tree->nodes[i]);
         begin = end;
