@@ -51,7 +51,7 @@ void keep_place(inout Search search, vec3 at, vec4 seen, uint rank)
 uint ask(Search search, Cell cell, Qef solved)
 {
     uint questions = 1u;
-    if (search.phase == SOLVE && solved.rank == 2u) {
+    if (search.phase == SOLVE && solved.rank == 2u && search.alone) {
         vec2 ends = line_ends(cell, solved.at, solved.free);
         asked[1] = solved.at + ends.x * solved.free;
         asked[2] = solved.at + ends.y * solved.free;
@@ -122,8 +122,8 @@ uint react(inout Search search, Cell cell, Qef solved, uint questions)
     return next;
 }
 
-/* Loops that share a cell get in each other's way where they are not on the surface: then they stay at the mean of their
- * crossings. */
+/* Loops that share a cell are not asked for planes that no crossing saw, or two would come to one corner; and where they are
+ * not on the surface they stay at the mean of their crossings, or they would get in each other's way. */
 Search place_vertex(Cell cell, bool alone, vec3 usual)
 {
     bool shared_cell = !alone;
