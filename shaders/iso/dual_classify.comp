@@ -46,7 +46,7 @@ uint write_loops(uint slot, uint word, uvec4 lower, uvec4 upper, uint cells)
     while (rest != 0u) {
         uint bit = uint(findLSB(rest));
         rest &= rest - 1u;
-        uvec4 entry = dual_entry(cell_pattern(lower, upper, bit), false);
+        uvec3 entry = dual_entry(cell_pattern(lower, upper, bit), false);
         uint further = entry_loops(entry) - 1u;
         low |= (further & 1u) << bit;
         high |= further >> 1 << bit;

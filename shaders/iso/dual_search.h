@@ -13,9 +13,9 @@ const float LOST = 0.05;
 /* So far on both sides of an edge the normals are still those of its two surfaces. */
 const float ASIDE = 0.02;
 
-/* Questions to the field are asked in one place, since its code is long: up to five at once. */
-vec3 asked[5];
-vec4 told[5];
+/* Questions to the field are asked in one place, since its code is long: up to nine at once. */
+vec3 asked[9];
+vec4 told[9];
 
 /* Where the line through `at` leaves the cell, as distances along it: backward, forward. */
 vec2 line_ends(Cell cell, vec3 at, vec3 along)
@@ -66,15 +66,15 @@ uint beyond_face(Cell cell, vec3 at, uvec3 sets)
     return so ? axis : 3u;
 }
 
-/* The corners of the cell that lie on a face's far side in the next cell. */
+/* The corners of the next cell along an axis. */
 void ask_beyond(Cell cell, vec3 at, uint axis)
 {
-    for (uint i = 0u; i < 4u; i++) {
+    for (uint i = 0u; i < 8u; i++) {
         uint u = axis == 0u ? 1u : 0u, v = axis == 2u ? 1u : 2u;
         vec3 corner;
-        corner[axis] = at[axis] < 0.5 ? -1.0 : 2.0;
-        corner[u] = float(i & 1u);
-        corner[v] = float(i >> 1);
+        corner[axis] = at[axis] < 0.5 ? -float(i & 1u) : 1.0 + float(i & 1u);
+        corner[u] = float(i >> 1 & 1u);
+        corner[v] = float(i >> 2);
         asked[1u + i] = corner;
     }
 }

@@ -24,7 +24,7 @@ uint spread_loops(uint slot, uint word, uvec4 lower, uvec4 upper, uint vertex)
     while (cells != 0u) {
         uint bit = uint(findLSB(cells));
         cells &= cells - 1u;
-        uvec4 entry = dual_entry(cell_pattern(lower, upper, bit), (turned >> bit & 1u) != 0u);
+        uvec3 entry = dual_entry(cell_pattern(lower, upper, bit), (turned >> bit & 1u) != 0u);
         uint number = 32u * word + bit, count = entry_loops(entry);
         for (uint loop = 0u; loop < count; loop++) {
             push.positions.at[3u * vertex] = slot;

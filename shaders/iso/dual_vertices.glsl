@@ -51,7 +51,7 @@ void keep_place(inout Search search, vec3 at, vec4 seen, uint rank)
 uint ask(Search search, Cell cell, Qef solved)
 {
     uint questions = 1u;
-    if (search.phase == SOLVE && solved.rank == 2u) {
+    if (search.phase == SOLVE && solved.rank == 2u && search.alone) {
         vec2 ends = line_ends(cell, solved.at, solved.free);
         asked[1] = solved.at + ends.x * solved.free;
         asked[2] = solved.at + ends.y * solved.free;
@@ -59,7 +59,7 @@ uint ask(Search search, Cell cell, Qef solved)
     } else if (search.phase == LEAVE) {
         asked[0] = search.corner;
         ask_beyond(cell, search.corner, beyond_face(cell, search.corner, search.sets));
-        questions = 5u;
+        questions = 9u;
     } else if (search.phase == SHARP) {
         asked[0] = search.at + ASIDE * search.aside;
         asked[1] = search.at - ASIDE * search.aside;
@@ -93,7 +93,7 @@ uint after_solving(inout Search search, Cell cell, Qef solved, uint questions)
 uint after_leaving(inout Search search)
 {
     bool same = true;
-    for (uint i = 2u; i < 5u; i++)
+    for (uint i = 2u; i < 9u; i++)
         same = same && (told[i].w < 0.0) == (told[1].w < 0.0);
     bool there = same && abs(told[0].w) <= ON_SURFACE;
     search.missed = same && !there;
@@ -106,7 +106,7 @@ uint react(inout Search search, Cell cell, Qef solved, uint questions)
 {
     bool solving = search.phase == SOLVE || search.phase == PAIR;
     if (solving && abs(told[0].w) <= max(search.phase == PAIR ? 0.0 : ON_SURFACE, abs(search.seen.w)))
-        keep_place(search, solved.at, told[0], solved.rank);
+        keep_place(search, solved.at, told[0], solved.at == solved.best ? solved.rank : min(solved.rank, 2u));
     uint next = DONE;
     if (search.phase == SOLVE) {
         next = after_solving(search, cell, solved, questions);
@@ -122,8 +122,8 @@ uint react(inout Search search, Cell cell, Qef solved, uint questions)
     return next;
 }
 
-/* Loops that share a cell get in each other's way where they are not on the surface: then they stay at the mean of their
- * crossings. */
+/* Loops that share a cell are not asked for planes that no crossing saw, or two would come to one corner; and where they are
+ * not on the surface they stay at the mean of their crossings, or they would get in each other's way. */
 Search place_vertex(Cell cell, bool alone, vec3 usual)
 {
     bool shared_cell = !alone;
@@ -183,7 +183,7 @@ void main()
     write_vertex(vertex, place, vertex_normal(placed.seen, along, count));
     count_vertex(placed.seen.w, capped);
     float off = abs(placed.seen.w);
-    if (placed.rank >= 2u && placed.sharp)
+    if (placed.rank >= 2u && placed.sharp && off <= LOST)
         atomicAdd(push.summary.at[placed.rank == 2u ? HEWN_SUMMARY_EDGES : HEWN_SUMMARY_CORNERS], 1u);
     if (placed.found > 0u)
         atomicAdd(push.summary.at[HEWN_SUMMARY_PLANES], placed.found);

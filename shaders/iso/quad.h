@@ -51,15 +51,17 @@ uint quad_cut(vec3 corners[4], vec3 low, float high, float surface, uint axis)
 {
     uint u = axis == 0u ? 1u : 0u, v = axis == 2u ? 1u : 2u;
     vec3 seen[4];
+    bool at_rim = false; /* cells without thickness: the edge lies on the quad's border, and there is no envelope */
     for (uint i = 0u; i < 4u; i++) {
         vec3 off = corners[i] - low;
         seen[i] = vec3(off[u], off[v], off[axis]);
+        at_rim = at_rim || off[u] == 0.0 || off[v] == 0.0;
     }
     vec2 ends = vec2(0.0, high - low[axis]);
     surface -= low[axis];
     float one = quad_misfit(seen[0], seen[1], seen[2], seen[3], ends, surface);
     float other = quad_misfit(seen[1], seen[2], seen[3], seen[0], ends, surface);
-    return (other < one ? 1u : 0u) | (min(one, other) >= QUAD_LEAVES ? QUAD_FAN : 0u);
+    return (other < one ? 1u : 0u) | (!at_rim && min(one, other) >= QUAD_LEAVES ? QUAD_FAN : 0u);
 }
 
 /* Where on the edge a fan has its middle: where the surface crosses it, but no nearer to the ends than vertices on edges

@@ -30,6 +30,8 @@ hewn_result hewn_adaptive_collapse(const hewn_dual_surface *surface, double erro
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "an error of %g makes no sense; it is a length, at least 0",
                          error_length);
     HEWN_TRY(hewn_progress_report(progress, "collapse", 0, error));
+    if (surface->quad_count == 0)
+        return HEWN_OK;
     HEWN_TRY(hewn_clusters_create(surface, error_length + ROUNDING * (double)surface->grid.cell, &clusters, error));
     hewn_result result = collapse(&clusters, progress, out, stats, error);
     hewn_clusters_free(&clusters);

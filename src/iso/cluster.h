@@ -6,7 +6,7 @@
  *
  * - every cluster is a disc, and no quad sees it twice (its patch is not pinched);
  * - two clusters meet along one curve at most, so that no edge is there twice;
- * - every cluster has at least three neighbours.
+ * - every cluster has at least three neighbours, and is at one boundary at most.
  *
  * Then the polygons are a closed 2-manifold of the same topology. It is the condition of Schaefer, Ju and Warren 2007
  * ('Manifold dual contouring'), but asked of the polygons themselves instead of the faces of octree cells, hence exact
@@ -81,6 +81,7 @@ typedef enum hewn_merge_verdict {
 
 typedef struct hewn_merge_triangle {
     double at[3][3];
+    double lo[3], hi[3]; /* its box, grown by the tolerance */
     uint32_t quad;
 } hewn_merge_triangle;
 
@@ -102,6 +103,8 @@ typedef struct hewn_merge {
     hewn_quadric quadric;
     double position[3];
     uint16_t box[6];
+    uint16_t
+        slack; /* how many cells the vertex may leave the box by: a corner can lie in a cell that has no edge crossed */
     uint8_t bounds;
 } hewn_merge;
 

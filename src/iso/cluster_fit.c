@@ -9,6 +9,8 @@
 /* A triangle may lean this far from the surface at its crossing (cosine), if it did not lean more before. */
 #define LEAST_FACING 0.1
 
+enum { MOST_PARTS = 10 };
+
 /* --- the vertex ----------------------------------------------------------------------------------------------------
  */
 
@@ -18,8 +20,9 @@ static hewn_box box_of(const hewn_clusters *clusters, const hewn_merge *merge)
     const hewn_dual_surface *surface = clusters->surface;
     for (int axis = 0; axis < 3; axis++) {
         uint32_t side = merge->bounds >> 2 * axis & 3;
-        box.lo[axis] = hewn_dual_coordinate(surface, axis, merge->box[2 * axis]);
-        box.hi[axis] = hewn_dual_coordinate(surface, axis, merge->box[2 * axis + 1] + 1u);
+        uint32_t low = merge->box[2 * axis], high = merge->box[2 * axis + 1] + 1u + merge->slack;
+        box.lo[axis] = hewn_dual_coordinate(surface, axis, low > merge->slack ? low - merge->slack : 0);
+        box.hi[axis] = hewn_dual_coordinate(surface, axis, high);
         if (side == 1)
             box.hi[axis] = box.lo[axis] = surface->grid.origin[axis];
         else if (side == 2)
@@ -135,6 +138,22 @@ static uint32_t cut(const hewn_clusters *clusters, const hewn_merge *merge, uint
     return polygon.count - 2;
 }
 
+static void put_triangle(const hewn_clusters *clusters, hewn_merge *merge, uint32_t quad, const double *corners[3])
+{
+    hewn_merge_triangle *out = &merge->triangles[merge->triangle_count++];
+    out->quad = quad;
+    for (int axis = 0; axis < 3; axis++) {
+        double lo = corners[0][axis], hi = lo;
+        for (int k = 0; k < 3; k++) {
+            out->at[k][axis] = corners[k][axis];
+            lo = corners[k][axis] < lo ? corners[k][axis] : lo;
+            hi = corners[k][axis] > hi ? corners[k][axis] : hi;
+        }
+        out->lo[axis] = lo - clusters->tolerance;
+        out->hi[axis] = hi + clusters->tolerance;
+    }
+}
+
 /* Cuts the polygons that remain. False where one is turned against the surface more than any of the set was. */
 static bool cut_remaining(const hewn_clusters *clusters, hewn_merge *merge, double least_facing)
 {
@@ -146,10 +165,7 @@ static bool cut_remaining(const hewn_clusters *clusters, hewn_merge *merge, doub
         for (uint32_t t = 0; t < count; t++) {
             if (hewn_clusters_facing(clusters, quad, corners[t][0], corners[t][1], corners[t][2]) < least_facing)
                 return false;
-            hewn_merge_triangle *triangle = &merge->triangles[merge->triangle_count++];
-            triangle->quad = quad;
-            for (int k = 0; k < 3; k++)
-                memcpy(triangle->at[k], corners[t][k], sizeof triangle->at[k]);
+            put_triangle(clusters, merge, quad, corners[t]);
         }
     }
     return merge->triangle_count > 0;
@@ -204,6 +220,12 @@ static bool collect_points(const hewn_clusters *clusters, hewn_merge *merge)
     return true;
 }
 
+static bool in_box(const hewn_merge_triangle *triangle, const double at[3])
+{
+    return at[0] >= triangle->lo[0] && at[0] <= triangle->hi[0] && at[1] >= triangle->lo[1] &&
+           at[1] <= triangle->hi[1] && at[2] >= triangle->lo[2] && at[2] <= triangle->hi[2];
+}
+
 /* Each point goes to the nearest of the new triangles, or to one that is much nearer than it need be. */
 static bool rehost(const hewn_clusters *clusters, hewn_merge *merge)
 {
@@ -216,6 +238,8 @@ static bool rehost(const hewn_clusters *clusters, hewn_merge *merge)
         for (size_t k = 0; k < merge->triangle_count && least > near; k++) {
             size_t here = guess + k < merge->triangle_count ? guess + k : guess + k - merge->triangle_count;
             const hewn_merge_triangle *triangle = &merge->triangles[here];
+            if (!in_box(triangle, at))
+                continue;
             double square = hewn_triangle_distance_squared(at, triangle->at[0], triangle->at[1], triangle->at[2]);
             if (square < least) {
                 least = square;
@@ -230,13 +254,25 @@ static bool rehost(const hewn_clusters *clusters, hewn_merge *merge)
     return true;
 }
 
-/* Whether the uniform surface is within `reach` of a point. */
-static bool is_near_uniform(const hewn_clusters *clusters, const double at[3], double reach)
+/* How far the uniform surface itself may be off at a triangle: where a cell lost a feature, its vertex says so. What is
+ * won back there lies farther off: a corner several times as far as its nearest plane. */
+static double doubt(const hewn_clusters *clusters, const uint32_t corners[3])
 {
+    const float *residuals = clusters->surface->residuals;
+    double most = 0;
+    for (int k = 0; k < 3 && residuals; k++)
+        most = fmax(most, 4 * (double)residuals[corners[k]]);
+    return fmin(most, 0.5 * (double)clusters->surface->grid.cell);
+}
+
+/* Whether a point is within the tolerance of the uniform surface, or of that and what it may be off. */
+static bool is_within(const hewn_clusters *clusters, const double at[3], bool doubted)
+{
+    double most = clusters->tolerance + (doubted ? 0.5 * (double)clusters->surface->grid.cell : 0);
     float lo[3], hi[3];
     for (int axis = 0; axis < 3; axis++) {
-        lo[axis] = (float)(at[axis] - reach);
-        hi[axis] = (float)(at[axis] + reach);
+        lo[axis] = (float)(at[axis] - most);
+        hi[axis] = (float)(at[axis] + most);
     }
     hewn_bvh_walk walk = hewn_bvh_walk_begin(&clusters->bvh, lo, hi, 0);
     const float *positions = clusters->surface->positions;
@@ -244,7 +280,9 @@ static bool is_near_uniform(const hewn_clusters *clusters, const double at[3], d
     while (hewn_bvh_walk_next(&walk, &block)) {
         for (uint64_t slot = 4 * block; slot < 4 * block + 4; slot++) {
             const uint32_t *corner = &clusters->triangles[3 * (size_t)clusters->bvh.order[slot]];
-            double p[3][3];
+            double p[3][3], reach = clusters->tolerance + (doubted ? doubt(clusters, corner) : 0);
+            if (doubted && reach == clusters->tolerance)
+                continue;
             for (int k = 0; k < 9; k++)
                 p[k / 3][k % 3] = positions[3 * (size_t)corner[k / 3] + (size_t)(k % 3)];
             if (hewn_triangle_distance_squared(at, p[0], p[1], p[2]) <= reach * reach)
@@ -254,23 +292,30 @@ static bool is_near_uniform(const hewn_clusters *clusters, const double at[3], d
     return false;
 }
 
-/* The other way: polygons do not stray. Half a cell is let pass, for where a feature is won back that cells had lost
- * the uniform surface is what is wrong. */
+static bool is_near_uniform(const hewn_clusters *clusters, const double at[3])
+{
+    return is_within(clusters, at, false) || (clusters->surface->residuals && is_within(clusters, at, true));
+}
+
+/* The other way: polygons do not stray. Looked at on a lattice, from the corners and the middles of sides of a small
+ * triangle to `MOST_PARTS` steps a side of a large one. */
 static bool stays_near(const hewn_clusters *clusters, const hewn_merge *merge)
 {
-    double reach = clusters->tolerance + 0.5 * (double)clusters->surface->grid.cell;
-    if (!is_near_uniform(clusters, merge->position, reach))
-        return false;
     for (size_t i = 0; i < merge->triangle_count; i++) {
         const double(*p)[3] = (const double(*)[3])merge->triangles[i].at;
-        double at[3];
-        for (int k = 0; k < 4; k++) {
+        double longest = 0;
+        for (int k = 0; k < 3; k++)
             for (int axis = 0; axis < 3; axis++)
-                at[axis] =
-                    k == 3 ? (p[0][axis] + p[1][axis] + p[2][axis]) / 3 : (p[k][axis] + p[(k + 1) % 3][axis]) / 2;
-            if (!is_near_uniform(clusters, at, reach))
-                return false;
-        }
+                longest = fmax(longest, fabs(p[k][axis] - p[(k + 1) % 3][axis]));
+        int parts = (int)fmin(MOST_PARTS, fmax(2, ceil(longest / (2 * (double)clusters->surface->grid.cell))));
+        for (int u = 0; u <= parts; u++)
+            for (int v = 0; u + v <= parts; v++) {
+                double at[3];
+                for (int axis = 0; axis < 3; axis++)
+                    at[axis] = p[0][axis] + ((p[1][axis] - p[0][axis]) * u + (p[2][axis] - p[0][axis]) * v) / parts;
+                if (!is_near_uniform(clusters, at))
+                    return false;
+            }
     }
     return true;
 }

@@ -17,6 +17,7 @@ static bool add_up(const hewn_clusters *clusters, hewn_merge *merge, const uint1
 {
     merge->quadric = (hewn_quadric){0};
     merge->bounds = 0;
+    merge->slack = box ? 0 : 1;
     memcpy(merge->box, box ? box : clusters->box[merge->set[0]], sizeof merge->box);
     for (uint32_t i = 0; i < merge->count; i++) {
         uint32_t cluster = merge->set[i];

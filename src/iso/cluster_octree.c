@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "iso/cluster_passes.h"
 
-enum { COLOURS = 27, MOST_LEVELS = 21 };
+enum { COLOURS = 27, MOST_LEVELS = 21, WORTH_A_TEAM = 48 };
 
 /* The clusters of a node: a stretch of the list of all. */
 typedef struct node {
@@ -151,17 +151,17 @@ static bool merge_node(octree *tree, worker *own, node here)
 
 static hewn_result merge_level(octree *tree, hewn_error *error)
 {
-    bool failed = false;
-    uint32_t begin = 0;
+    uint32_t failures = 0, begin = 0;
     list_nodes(tree);
     for (int colour = 0; colour < COLOURS; colour++) {
         uint32_t end = tree->colour_ends[colour];
-#pragma omp parallel for schedule(dynamic, 16) reduction(|| : failed) num_threads(tree->worker_count)
+        int team = end - begin >= WORTH_A_TEAM ? tree->worker_count : 1;
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : failures) num_threads(team)
         for (uint32_t i = begin; i < end; i++)
-            failed = failed || !merge_node(tree, &tree->workers[omp_get_thread_num()], tree->nodes[i]);
+            failures += !merge_node(tree, &tree->workers[omp_get_thread_num()], tree->nodes[i]);
         begin = end;
     }
-    if (failed)
+    if (failures)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory merging %u clusters", tree->count);
     uint32_t left = 0;
     for (uint32_t i = 0; i < tree->count; i++)

@@ -1,6 +1,7 @@
 /* Merging neighbours pair by pair, those first that cost least. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/alloc.h"
 #include "base/progress.h"
@@ -120,6 +121,25 @@ static hewn_result merge_round(pairing *run, uint64_t *merged, hewn_error *error
     return HEWN_OK;
 }
 
+/* Where the best place of a vertex was refused when its cluster was made, it may be free now that others have moved. */
+static hewn_result settle(pairing *run, hewn_error *error)
+{
+    hewn_clusters *clusters = run->clusters;
+    for (uint32_t a = 0; a < clusters->vertex_count; a++) {
+        if (clusters->cluster[a] != a || clusters->next_member[a] == a)
+            continue;
+        run->merge.quadric = clusters->quadric[a];
+        run->merge.bounds = clusters->bounds[a];
+        memcpy(run->merge.box, clusters->box[a], sizeof run->merge.box);
+        double here = hewn_quadric_distance(&clusters->quadric[a], clusters->position[a]);
+        if (here <= 1.01 * hewn_merge_place(clusters, &run->merge) + 0.001 * clusters->tolerance)
+            continue;
+        if (hewn_clusters_merge(clusters, &run->merge, &a, 1, NULL) == HEWN_MERGE_MEMORY)
+            return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory moving a vertex");
+    }
+    return HEWN_OK;
+}
+
 static hewn_result merge_rounds(pairing *run, const hewn_progress *progress, hewn_error *error)
 {
     uint64_t merged = 1;
@@ -127,13 +147,13 @@ static hewn_result merge_rounds(pairing *run, const hewn_progress *progress, hew
         HEWN_TRY(merge_round(run, &merged, error));
         HEWN_TRY(hewn_progress_report(progress, "collapse", 0.6 + 0.3 * (1 - 2.0 / run->round), error));
     }
-    return HEWN_OK;
+    return settle(run, error);
 }
 
 hewn_result hewn_clusters_merge_pairs(hewn_clusters *clusters, const hewn_progress *progress,
                                       hewn_adaptive_stats *stats, hewn_error *error)
 {
-    pairing run = {.clusters = clusters};
+    pairing run = {.clusters = clusters, .merge.slack = 1};
     run.touched = hewn_alloc(clusters->vertex_count, sizeof *run.touched);
     if (!run.touched)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %u vertices", clusters->vertex_count);

@@ -95,7 +95,7 @@ static int compare(const void *a, const void *b)
     return p < q ? -1 : p > q;
 }
 
-/* No neighbour twice, and each keeps three neighbours of its own. */
+/* No neighbour twice, one boundary at most, and each neighbour keeps three of its own. */
 static bool neighbours_agree(const hewn_clusters *clusters, hewn_merge *merge)
 {
     if (merge->remaining_count < 3)
@@ -104,6 +104,8 @@ static bool neighbours_agree(const hewn_clusters *clusters, hewn_merge *merge)
     for (size_t i = 1; i < merge->remaining_count; i++)
         if (merge->followers[i] == merge->followers[i - 1])
             return false;
+    if (merge->followers[merge->remaining_count - 2] >= clusters->vertex_count)
+        return false; /* two imagined vertices: it would join two boundaries in a point */
     if (merge->loser_count)
         qsort(merge->losers, merge->loser_count, sizeof *merge->losers, compare);
     for (size_t i = 0, run = 0; i < merge->loser_count; i++) {

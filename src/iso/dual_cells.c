@@ -78,10 +78,7 @@ void hewn_dual_table_derive(hewn_dual_table *out)
         hewn_dual_cell cell;
         hewn_dual_cell_derive(pattern, entry % 2 && face != HEWN_DUAL_NO_FACE ? 1u << face : 0, &cell);
         words[0] = cell.loop_count | face << 4;
-        for (uint32_t loop = 0; loop < cell.loop_count; loop++) {
+        for (uint32_t loop = 0; loop < cell.loop_count; loop++)
             words[1 + loop / 2] |= cell.edges[loop] << 16 * (loop % 2);
-            for (uint32_t edge = 0; edge < 12; edge++)
-                words[3] |= (cell.edges[loop] >> edge & 1) * loop << 2 * edge;
-        }
     }
 }

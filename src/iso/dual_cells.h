@@ -34,8 +34,8 @@ uint32_t hewn_dual_doubtful_face(uint32_t pattern);
 
 /* As shaders read it. Entry 2 * pattern is the pattern's own, entry 2 * pattern + 1 that with its doubtful face turned.
  * Word 0: number of loops in bits 0 to 2, doubtful face in bits 4 to 6. Words 1 and 2: edges of loops 0 and 1, 2 and 3,
- * 16 bits each. Word 3: the loop of each edge, two bits each. */
-#define HEWN_DUAL_ENTRY_WORDS 4
+ * 16 bits each. */
+#define HEWN_DUAL_ENTRY_WORDS 3
 typedef struct hewn_dual_table {
     uint32_t words[512][HEWN_DUAL_ENTRY_WORDS];
 } hewn_dual_table;

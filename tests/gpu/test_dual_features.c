@@ -2,6 +2,7 @@
  * their planes, and distances from smooth surfaces against those of marching cubes. */
 #include <math.h>
 
+#include "test_code_support.h"
 #include "test_dual_support.h"
 
 /* --- a cube in a pose ----------------------------------------------------------------------------------------------
@@ -268,7 +269,144 @@ static void cubes_keep_edges_and_corners(void **state)
                   (unsigned long long)sums.told_corners, (unsigned long long)sums.told_edges,
                   (unsigned long long)sums.told_found, (unsigned long long)sums.told_lost);
     assert_true(sums.corners_seen > 3 * poses && sums.worst_corner <= 1e-4);
+    int corners = sums.corners_seen + sums.corners_recovered;
+    assert_true(sums.corners_missed == 0 && 4 * corners > 3 * 8 * poses);
+    assert_true(labs((long)sums.told_corners - corners) <= sums.doubtful);
+    assert_true(sums.told_edges >= (uint64_t)sums.edge_vertices - sums.told_corners && sums.told_found > 0);
+    assert_true(sums.told_lost * 2 >= (uint64_t)(sums.corners_empty));
     assert_true(sums.edge_vertices > 50 * poses && sums.worst_edge <= 1e-4);
+}
+
+/* --- wedges --------------------------------------------------------------------------------------------------------
+ */
+
+typedef struct wedge {
+    double normal[2][3], distance[2];
+    double point[3], along[3]; /* the edge */
+    bool hollow;
+} wedge;
+
+static wedge random_wedge(uint64_t *random, double angle, bool hollow)
+{
+    wedge w = {.hollow = hollow};
+    double axis[3], turn[3][3], size;
+    for (int k = 0; k < 3; k++) {
+        axis[k] = dual_between(random, -1, 1);
+        w.point[k] = dual_between(random, -0.2, 0.2);
+    }
+    size = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    dual_turn(axis, dual_between(random, 0.2, 3), turn);
+    for (int k = 0; k < 3; k++) {
+        w.along[k] = turn[k][2];
+        w.normal[0][k] = turn[k][0];
+        w.normal[1][k] = cos(angle) * turn[k][0] + sin(angle) * turn[k][1];
+        for (int side = 0; side < 2; side++)
+            w.distance[side] += w.normal[side][k] * w.point[k];
+    }
+    assert_true(size > 0);
+    return w;
+}
+
+static hewn_node make_wedge(hewn_field *field, const void *user)
+{
+    const wedge *w = user;
+    hewn_node side[2];
+    for (int i = 0; i < 2; i++)
+        side[i] = hewn_plane(field, w->normal[i][0], w->normal[i][1], w->normal[i][2], w->distance[i]);
+    return w->hollow ? hewn_union(field, side[0], side[1]) : hewn_intersection(field, side[0], side[1]);
+}
+
+/* How far a vertex is off the edge, in cells, if the edge passes through its cell, well within the bounds; else 0. */
+static double wedge_distance(const wedge *w, const struct hewn_grid *grid, const float *position)
+{
+    double begin = -10, end = 10, off[3], along = 0, sum = 0;
+    for (int k = 0; k < 3; k++) {
+        double low = floor(((double)position[k] - (double)grid->origin[k]) / (double)grid->cell);
+        low = low * (double)grid->cell + (double)grid->origin[k];
+        double a = (low - w->point[k]) / w->along[k], b = (low + (double)grid->cell - w->point[k]) / w->along[k];
+        begin = fmax(begin, fmin(a, b));
+        end = fmin(end, fmax(a, b));
+        off[k] = (double)position[k] - w->point[k];
+        along += off[k] * w->along[k];
+        if (fabs((double)position[k]) > 1 - 2 * (double)grid->cell)
+            return 0;
+    }
+    for (int k = 0; k < 3; k++)
+        sum += (off[k] - along * w->along[k]) * (off[k] - along * w->along[k]);
+    return end - begin > 1e-3 * (double)grid->cell ? sqrt(sum) / (double)grid->cell : 0;
+}
+
+/* Where the edge of two planes passes through a cell with a vertex, blunt or acute, solid or hollow, the vertex is on
+ * it: but for loops that share a cell, and where one of the planes crosses none of the cell's edges. */
+static void wedges_keep_their_edge(void **state)
+{
+    dual_fixture *f = *state;
+    static const double degrees[] = {8, 20, 45, 90, 120, 150};
+    uint64_t random = 77;
+    for (int hollow = 0; hollow < 2; hollow++) {
+        wedge w = random_wedge(&random, 1, hollow);
+        dual_subject subject = dual_make(f, make_wedge, &w);
+        for (size_t i = 0; i < sizeof degrees / sizeof *degrees; i++) {
+            uint64_t near = 0, off = 0;
+            double most = 0;
+            for (int pose_of = 0; pose_of < (gpu_test_long() ? 100 : 10); pose_of++) {
+                hewn_extract_stats stats;
+                w = random_wedge(&random, degrees[i] * acos(-1) / 180, hollow);
+                dual_renumber(&subject, make_wedge, &w);
+                dual_mesh mesh = dual_extract(&subject, CELLS, HEWN_METHOD_DC, &stats);
+                for (uint64_t v = 0; v < mesh.triangles.vertex_count - stats.fans; v++) {
+                    double distance = wedge_distance(&w, &mesh.grid, mesh.triangles.positions + 3 * v);
+                    near += distance > 0 && distance <= 1e-4 ? 1 : 0;
+                    off += distance > 1e-4 ? 1 : 0;
+                    most = fmax(most, distance);
+                }
+                hewn_triangles_destroy(&mesh.triangles);
+            }
+            print_message("# %s wedge, %g degrees between normals: %llu vertices on the edge, %llu off (most %.2g)\n",
+                          hollow ? "hollow" : "solid", degrees[i], (unsigned long long)near, (unsigned long long)off,
+                          most);
+            assert_true(near > 20 && (degrees[i] > 90 ? off * 10 < near : off == 0));
+        }
+        dual_free(&subject);
+    }
+}
+
+/* --- cones -------------------------------------------------------------------------------------------------------- */
+
+static hewn_node make_cone(hewn_field *field, const void *user)
+{
+    return posed(field, user, hewn_cone(field, 0.5, 0, 0.9));
+}
+
+static void cones_keep_their_tip(void **state)
+{
+    dual_fixture *f = *state;
+    uint64_t random = 3;
+    pose p = random_pose(&random);
+    dual_subject subject = dual_make(f, make_cone, &p);
+    int on_tip = 0, poses = gpu_test_long() ? 400 : 40;
+    for (int i = 0; i < poses; i++) {
+        hewn_extract_stats stats;
+        double tip[3], least = INFINITY;
+        p = random_pose(&random);
+        dual_renumber(&subject, make_cone, &p);
+        dual_mesh mesh = dual_extract(&subject, 16, HEWN_METHOD_DC, &stats);
+        for (int k = 0; k < 3; k++)
+            tip[k] = p.place[k] + 0.45 * p.turn[k][1];
+        for (uint64_t v = 0; v < mesh.triangles.vertex_count; v++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++) {
+                double off = (double)mesh.triangles.positions[3 * v + (uint64_t)k] - tip[k];
+                sum += off * off;
+            }
+            least = fmin(least, sqrt(sum) / (double)mesh.grid.cell);
+        }
+        on_tip += least <= 1e-3 ? 1 : 0;
+        hewn_triangles_destroy(&mesh.triangles);
+    }
+    dual_free(&subject);
+    print_message("# a vertex on the tip of %d cones of %d\n", on_tip, poses);
+    assert_true(3 * on_tip > poses);
 }
 
 /* --- curved surfaces ------------------------------------------------------------------------------------------------
@@ -323,19 +461,52 @@ static void curved_surfaces_are_no_farther_than_by_mc(void **state)
                 hewn_extract_stats stats;
                 dual_mesh mesh = dual_extract(&subject, resolutions[r], methods[m], &stats);
                 of[m] = dual_measure(&subject, &mesh, 60000);
-                if (m == 2)
-                    print_message("# %u: %llu edges, %llu corners, %llu planes, %llu lost\n", resolutions[r],
-                                  (unsigned long long)stats.edge_vertices, (unsigned long long)stats.corner_vertices,
-                                  (unsigned long long)stats.planes_found, (unsigned long long)stats.features_lost);
                 hewn_triangles_destroy(&mesh.triangles);
             }
             print_message("# %s, %u cells: mean %.3e %.3e %.3e, most %.3e %.3e %.3e (mc, nets, dc; in cells)\n",
                           shapes[i].name, resolutions[r], of[0].mean, of[1].mean, of[2].mean, of[0].most, of[1].most,
                           of[2].most);
-            if (of[2].mean > of[0].mean || of[2].most > of[0].most)
-                print_message("# ^ WORSE\n");
+            assert_true(of[2].mean <= of[0].mean && of[2].most <= of[0].most);
         }
         dual_free(&subject);
+    }
+}
+
+/* --- triangles that meet others ---------------------------------------------------------------------------------- */
+
+static hewn_node make_tree(hewn_field *field, const void *user)
+{
+    uint64_t random = 1 + *(const uint64_t *)user;
+    return code_many_shapes(field, &random, 12);
+}
+
+static void few_triangles_meet_others(void **state)
+{
+    dual_fixture *f = *state;
+    static const hewn_method methods[] = {HEWN_METHOD_NETS, HEWN_METHOD_DC};
+    static const uint32_t resolutions[] = {24, 64};
+    uint64_t trees = gpu_test_long() ? 60 : 6, triangles[2] = {0}, pairs[2] = {0}, meshes[2] = {0}, fans[2] = {0};
+    for (uint64_t seed = 0; seed < trees; seed++) {
+        dual_subject subject = dual_make(f, make_tree, &seed);
+        for (int i = 0; i < 4; i++) {
+            hewn_extract_stats stats;
+            uint64_t count = 0;
+            int m = i % 2;
+            dual_mesh mesh = dual_extract(&subject, resolutions[i / 2], methods[m], &stats);
+            GPU_TEST_TRY(hewn_triangles_count_self_intersections(&mesh.triangles, 0, NULL, NULL, &count, &error));
+            triangles[m] += mesh.triangles.triangle_count;
+            pairs[m] += count;
+            meshes[m] += count > 0 ? 1 : 0;
+            fans[m] += stats.fans;
+            hewn_triangles_destroy(&mesh.triangles);
+        }
+        dual_free(&subject);
+    }
+    for (int m = 0; m < 2; m++) {
+        print_message("# %s: %llu pairs in %llu meshes of %llu, %llu triangles, %llu fans\n",
+                      hewn_method_name(methods[m]), (unsigned long long)pairs[m], (unsigned long long)meshes[m],
+                      (unsigned long long)(2 * trees), (unsigned long long)triangles[m], (unsigned long long)fans[m]);
+        assert_true(pairs[m] * 2000 <= triangles[m]);
     }
 }
 
@@ -343,6 +514,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cubes_keep_edges_and_corners),
+        cmocka_unit_test(wedges_keep_their_edge),
+        cmocka_unit_test(cones_keep_their_tip),
+        cmocka_unit_test(few_triangles_meet_others),
         cmocka_unit_test(curved_surfaces_are_no_farther_than_by_mc),
     };
     return cmocka_run_group_tests_name("dual_features", tests, dual_open, dual_close);
