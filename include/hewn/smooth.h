@@ -25,18 +25,18 @@ HEWN_API bool hewn_smooth_method_find(const char *name, hewn_smooth_method *out)
 
 /* What to do; zero everywhere smooths by ten steps of Taubin's method.
  *
- * iterations: steps; 0 stands for 10, for one step of IMPLICIT, and for 20 of BILATERAL.
+ * iterations: steps; 0 stands for 10, for one step of IMPLICIT, and for 6 of BILATERAL.
  *
  * strength (TAUBIN, LAPLACIAN): the share of the way to the mean of its neighbours that a vertex goes in a step, above
  * 0 to 1; 0 stands for 0.5. passband (TAUBIN): the eigenvalue of the mesh's normalised Laplacian, 0 to 2, below which
- * shapes stay; 0 stands for 0.1. Each step scales an eigenvector of eigenvalue k by (1 - lambda k) (1 + mu k), lambda
+ * shapes stay; 0 stands for 0.02. Each step scales an eigenvector of eigenvalue k by (1 - lambda k) (1 + mu k), lambda
  * the strength and 1 / mu = 1 / lambda - passband.
  *
  * step (COTAN, IMPLICIT): a length; a step smooths as a Gaussian of this standard deviation would on a flat surface,
  * that is for a time of step^2 / 2. n steps reach sqrt(n) as far. 0 stands for the mean edge. COTAN goes less far at
  * vertices where so long a step would not be stable, and counts them.
  *
- * angle (BILATERAL): degrees; faces whose normals differ by much more do not touch each other. 0 stands for 20. radius:
+ * angle (BILATERAL): degrees; faces whose normals differ by much more do not touch each other. 0 stands for 15. radius:
  * the same for the distance between faces; 0 stands for the mean one of neighbours.
  *
  * original, push (HC): how much a vertex is drawn to where it was at the start (against the step before), and how much

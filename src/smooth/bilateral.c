@@ -8,7 +8,7 @@
 #include "base/alloc.h"
 #include "smooth/work.h"
 
-enum { MOST_NEAR = 256, VERTEX_STEPS = 20 };
+enum { MOST_NEAR = 256, VERTEX_STEPS = 10 };
 
 /* Three numbers a triangle, but for `areas`. */
 typedef struct bilateral {

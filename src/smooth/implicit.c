@@ -2,9 +2,10 @@
  * all steps, so that one factorisation serves steps and axes. M and L are symmetric; with M / t > 0 the sum is positive
  * definite for any step. Vertices that do not move are no unknowns.
  *
- * CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008) factors simplicially: on one thread and without BLAS, so with the
- * same bytes everywhere, and without its modules under the GPL. */
+ * CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008) factors by supernodes, with the order of METIS: its products are
+ * BLAS', so bytes are the same for one BLAS and its number of threads. */
 #include <cholmod.h>
+#include <float.h>
 #include <string.h>
 
 #include "base/alloc.h"
@@ -14,6 +15,7 @@ typedef struct implicit_solve {
     smooth_work *work;
     uint32_t *unknown; /* of each vertex, or HEWN_NONE */
     uint32_t unknowns;
+    smooth_triangle *triangles;
     double *mass; /* M / t of each unknown */
     cholmod_common common;
     cholmod_sparse *matrix;
@@ -69,18 +71,27 @@ static void add_entry(column *to, int row, double value)
     to->values[at] = value;
 }
 
+/* What the triangle of a corner at v gives to v, and the vertices at its other corners. */
+static smooth_corner corner_at(const implicit_solve *solve, uint32_t v, uint32_t corner, uint32_t other[2])
+{
+    const smooth_work *work = solve->work;
+    double u[3], w[3];
+    smooth_others(work->cut.corners, corner, &other[0], &other[1]);
+    smooth_between(work->at + 3 * (size_t)v, work->at + 3 * (size_t)other[0], u);
+    smooth_between(work->at + 3 * (size_t)v, work->at + 3 * (size_t)other[1], w);
+    return smooth_corner_of(solve->triangles + corner / 3, corner % 3, u, w);
+}
+
 /* Fills a column in and returns the vertex' mixed area. */
 static double fill_column(const implicit_solve *solve, uint32_t v, column *to)
 {
     const smooth_work *work = solve->work;
-    const double *a = work->at + 3 * (size_t)v;
     double diagonal = 0, area = 0;
     int self = (int)solve->unknown[v];
     to->length = 0;
     for (uint32_t i = work->fans.first[v]; i < work->fans.first[v + 1]; i++) {
         uint32_t other[2];
-        smooth_others(work->cut.corners, work->fans.items[i], &other[0], &other[1]);
-        smooth_corner corner = smooth_corner_of(a, work->at + 3 * (size_t)other[0], work->at + 3 * (size_t)other[1]);
+        smooth_corner corner = corner_at(solve, v, work->fans.items[i], other);
         const double weights[2] = {corner.ab, corner.ac};
         for (int k = 0; k < 2; k++)
             if (solve->unknown[other[k]] < solve->unknown[v])
@@ -122,10 +133,12 @@ static hewn_result build_matrix(implicit_solve *solve, hewn_error *error)
         uint32_t u = solve->unknown[v];
         if (u == HEWN_NONE)
             continue;
+        double *diagonal = &values[begin[u + 1] - 1];
         double least = 1e-9 * whole / solve->unknowns; /* vertices without area would have no equation */
         double mass = (solve->mass[u] > least ? solve->mass[u] : least) / (time * smooth_freedom(work, v));
+        mass += 1e-12 * fabs(*diagonal) + DBL_MIN; /* more than L loses of its rows' zero sums by rounding */
         solve->mass[u] = mass;
-        values[begin[u + 1] - 1] += mass;
+        *diagonal += mass;
     }
     return HEWN_OK;
 }
@@ -136,13 +149,12 @@ static hewn_result build_matrix(implicit_solve *solve, hewn_error *error)
 static void add_fixed(const implicit_solve *solve, uint32_t v, double right[3])
 {
     const smooth_work *work = solve->work;
-    const double *a = work->at + 3 * (size_t)v;
     for (uint32_t i = work->fans.first[v]; i < work->fans.first[v + 1]; i++) {
         uint32_t other[2];
         smooth_others(work->cut.corners, work->fans.items[i], &other[0], &other[1]);
         if (solve->unknown[other[0]] != HEWN_NONE && solve->unknown[other[1]] != HEWN_NONE)
             continue;
-        smooth_corner corner = smooth_corner_of(a, work->at + 3 * (size_t)other[0], work->at + 3 * (size_t)other[1]);
+        smooth_corner corner = corner_at(solve, v, work->fans.items[i], other);
         const double weights[2] = {corner.ab, corner.ac};
         for (int k = 0; k < 2; k++)
             for (size_t axis = 0; axis < 3 && solve->unknown[other[k]] == HEWN_NONE; axis++)
@@ -185,6 +197,7 @@ static hewn_result run_steps(implicit_solve *solve, double *fixed, hewn_error *e
 {
     const smooth_work *work = solve->work;
     size_t n = solve->unknowns;
+    smooth_measure_triangles(work, solve->triangles);
     HEWN_TRY(build_matrix(solve, error));
     for (uint32_t v = 0; v < work->count; v++) {
         double sum[3] = {0, 0, 0};
@@ -213,11 +226,14 @@ hewn_result hewn_smooth_implicit(smooth_work *work, hewn_error *error)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
     number_unknowns(&solve);
     cholmod_start(&solve.common);
-    solve.common.supernodal = CHOLMOD_SIMPLICIAL;
+    solve.common.supernodal = CHOLMOD_AUTO;
+    solve.common.nmethods = 1;
+    solve.common.method[0].ordering = CHOLMOD_METIS;
     solve.common.print = 0;
     solve.mass = hewn_alloc(solve.unknowns, 4 * sizeof *solve.mass);
     hewn_result result = HEWN_OK;
-    if (!solve.mass)
+    solve.triangles = hewn_alloc(work->cut.face_count, sizeof *solve.triangles);
+    if (!solve.mass || !solve.triangles)
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
     else if (solve.unknowns > 0)
         result = run_steps(&solve, solve.mass + solve.unknowns, error);
@@ -225,6 +241,7 @@ hewn_result hewn_smooth_implicit(smooth_work *work, hewn_error *error)
     cholmod_free_factor(&solve.factor, &solve.common);
     cholmod_free_sparse(&solve.matrix, &solve.common);
     cholmod_finish(&solve.common);
+    hewn_free(solve.triangles);
     hewn_free(solve.mass);
     hewn_free(solve.unknown);
     return result;

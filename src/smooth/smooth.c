@@ -237,11 +237,12 @@ hewn_result hewn_polygons_smooth(const hewn_polygons *polygons, const hewn_smoot
 
 /* --- curvature ---------------------------------------------------------------------------------------------------- */
 
-static void find_curvature(const smooth_work *work, const frame *from, double *curvature, double *areas)
+static void find_curvature(const smooth_work *work, const smooth_triangle *triangles, const frame *from,
+                           double *curvature, double *areas)
 {
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < work->count; v++) {
-        smooth_star star = smooth_star_of(work, work->at, v);
+        smooth_star star = smooth_star_of(work, triangles, v);
         for (size_t axis = 0; curvature && axis < 3; axis++)
             curvature[3 * (size_t)v + axis] = star.area > 0 ? star.pull[axis] / star.area / from->scale : 0;
         if (areas)
@@ -258,8 +259,14 @@ hewn_result hewn_mean_curvature(const hewn_polygons *polygons, double *curvature
     hewn_result result = prepare(&work, &from, error);
     if (result == HEWN_OK)
         result = hewn_smooth_corners(&work.cut, &work.fans, error);
-    if (result == HEWN_OK)
-        find_curvature(&work, &from, curvature, areas);
+    smooth_triangle *triangles = hewn_alloc(work.cut.face_count, sizeof *triangles);
+    if (result == HEWN_OK && !triangles)
+        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory measuring %u vertices", work.count);
+    if (result == HEWN_OK) {
+        smooth_measure_triangles(&work, triangles);
+        find_curvature(&work, triangles, &from, curvature, areas);
+    }
+    hewn_free(triangles);
     release(&work);
     return result;
 }
