@@ -16,6 +16,7 @@
 #include "hewn/repair.h"
 #include "hewn/scene.h"
 #include "hewn/smooth.h"
+#include "hewn/subdivide.h"
 #include "hewn/triangles.h"
 #include "hewn/units.h"
 
