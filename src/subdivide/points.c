@@ -67,7 +67,7 @@ static inline void edge_points(const pass *now, uint32_t width)
         const double *b = at(now->in, level->edge_verts[2 * (size_t)e + 1], width);
         double *to = now->out + ((size_t)level->verts + e) * width;
         double middle = linear ? 1 : level->edge_sharp ? hewn_sub_edge_share(level, e, now->masks.creasing) : 0;
-        if (middle >= 1) {
+        if (middle == 1) {
             for (uint32_t i = 0; i < width; i++)
                 to[i] = 0.5 * (a[i] + b[i]);
             continue;

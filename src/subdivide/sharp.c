@@ -20,16 +20,18 @@ float hewn_sub_child_sharpness(const sub_level *level, uint32_t edge, uint32_t v
     return own > 1 ? own - 1 : 0;
 }
 
+/* By Chaikin's rule one end of an edge may stay sharp and the other not, though its own sharpness is above 1. The share
+ * is that sharpness all the same, as in OpenSubdiv. */
 double hewn_sub_edge_share(const sub_level *level, uint32_t edge, hewn_creasing creasing)
 {
     float sharpness = level->edge_sharp[edge];
-    if (sharpness <= 0 || sharpness >= 1)
+    if (sharpness <= 0 || sharpness >= SHARP_FOREVER)
         return sharpness > 0;
-    if (creasing == HEWN_CREASING_CHAIKIN &&
-        hewn_sub_child_sharpness(level, edge, level->edge_verts[2 * (size_t)edge], creasing) > 0 &&
-        hewn_sub_child_sharpness(level, edge, level->edge_verts[2 * (size_t)edge + 1], creasing) > 0)
-        return 1;
-    return (double)sharpness;
+    if (creasing == HEWN_CREASING_UNIFORM)
+        return sharpness < 1 ? (double)sharpness : 1;
+    bool stays = hewn_sub_child_sharpness(level, edge, level->edge_verts[2 * (size_t)edge], creasing) > 0 &&
+                 hewn_sub_child_sharpness(level, edge, level->edge_verts[2 * (size_t)edge + 1], creasing) > 0;
+    return stays ? 1 : (double)sharpness;
 }
 
 static sub_rule rule_of(float vert_sharp, uint32_t sharp_edges)

@@ -23,7 +23,7 @@ static inline float sub_decrease(float sharpness)
 /* The sharpness of the half of an edge that stays at vertex v. */
 float hewn_sub_child_sharpness(const sub_level *level, uint32_t edge, uint32_t v, hewn_creasing creasing);
 
-/* The share of the midpoint in the point of an edge; the rest is that of the smooth rule. */
+/* The share of the midpoint in the point of an edge; the rest, which may be negative, is that of the smooth rule. */
 double hewn_sub_edge_share(const sub_level *level, uint32_t edge, hewn_creasing creasing);
 
 sub_vert_rule hewn_sub_rule_of(const sub_level *level, uint32_t v, hewn_creasing creasing);

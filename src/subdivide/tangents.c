@@ -82,9 +82,9 @@ static void cross_triangles(const star *at, uint32_t from, uint32_t k, double t[
     double value = 0.375 + 0.25 * c, d = 2 * c - 1, middle = -s, end;
     if (fabs(d) > 1e-6) {
         middle = (s / d + 0.375 * sum) / (value - 0.75 - 1 / d);
-        end = (s + middle) / (4 * d);
+        end = (s + middle) / d;
     } else {
-        end = ((value - 0.75) * middle - 0.375 * sum);
+        end = (value - 0.75) * middle - 0.375 * sum;
     }
     add(t, position(at, at->v), middle);
     add(t, neighbour(at, from), end);
