@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "mesh/renew_normals.h"
 #include "smooth/work.h"
 
 hewn_result hewn_model_smooth(hewn_model *model, const hewn_smooth_desc *desc, hewn_smooth_report *report,
@@ -19,7 +20,7 @@ hewn_result hewn_model_smooth(hewn_model *model, const hewn_smooth_desc *desc, h
     if (result == HEWN_OK) { /* both sets of positions stay until nothing can fail */
         double *before = model->positions;
         model->positions = positions;
-        result = hewn_smooth_renew_normals(model, error);
+        result = hewn_model_renew_normals(model, error);
         model->positions = result == HEWN_OK ? positions : before;
         positions = result == HEWN_OK ? before : positions;
     }

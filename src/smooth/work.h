@@ -35,9 +35,6 @@ hewn_result hewn_smooth_lock(smooth_work *work, hewn_error *error);
  * how many there are goes to the report. */
 hewn_result hewn_smooth_keep_volume(smooth_work *work, const double *before, hewn_error *error);
 
-/* Channels "normal" of a model, made anew for its positions. */
-hewn_result hewn_smooth_renew_normals(hewn_model *model, hewn_error *error);
-
 static inline void smooth_swap(smooth_work *work)
 {
     double *at = work->at;

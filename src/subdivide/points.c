@@ -59,7 +59,7 @@ static inline void edge_points(const pass *now, uint32_t width)
 {
     const sub_level *level = now->level;
     double ends = now->masks.scheme == HEWN_SCHEME_LOOP ? 0.375 : 0.25;
-    bool linear = now->masks.scheme == HEWN_SCHEME_BILINEAR;
+    bool linear = now->masks.linear;
 #pragma omp parallel for schedule(static)
     for (uint32_t e = 0; e < level->edges; e++) {
         const uint32_t *corner = level->edge_corners + 2 * (size_t)e;
@@ -126,7 +126,7 @@ static inline void add_rule(const pass *now, uint32_t v, sub_rule rule, const ui
 static inline void vert_points(const pass *now, uint32_t width)
 {
     const sub_level *level = now->level;
-    bool linear = now->masks.scheme == HEWN_SCHEME_BILINEAR;
+    bool linear = now->masks.linear;
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < level->verts; v++) {
         double *to = now->out + (size_t)v * width;
@@ -194,7 +194,7 @@ static void limit_of(const pass *now, uint32_t v, double *to, uint32_t width)
 {
     const sub_level *level = now->level;
     sub_vert_rule rule = {.rule = SUB_SMOOTH};
-    bool stays = now->masks.scheme == HEWN_SCHEME_BILINEAR || level->vert_first[v] == level->vert_first[v + 1];
+    bool stays = now->masks.linear || level->vert_first[v] == level->vert_first[v + 1];
     if (level->edge_sharp && !stays)
         rule = hewn_sub_rule_of(level, v, now->masks.creasing);
     stays = stays || rule.rule == SUB_CORNER;

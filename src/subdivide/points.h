@@ -8,6 +8,7 @@
 typedef struct sub_masks {
     hewn_scheme scheme;
     hewn_creasing creasing;
+    bool linear; /* nothing is smoothed, as always with BILINEAR */
 } sub_masks;
 
 /* `in` are those of `level`, `out` those of the level after it, all vertices of which are written. */

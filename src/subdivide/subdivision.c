@@ -108,7 +108,7 @@ hewn_result hewn_subdivision_create(const hewn_polygons *polygons, const hewn_su
     if (!sub)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory subdividing");
     sub->count = desc->levels == HEWN_LEVELS_NONE ? 0 : desc->levels == 0 ? 1 : desc->levels;
-    sub->masks = (sub_masks){desc->scheme, desc->creasing};
+    sub->masks = (sub_masks){desc->scheme, desc->creasing, desc->scheme == HEWN_SCHEME_BILINEAR};
     sub->limit = desc->limit;
     hewn_result result = build(sub, polygons, desc, error);
     if (result != HEWN_OK)

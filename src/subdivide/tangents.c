@@ -119,7 +119,7 @@ void hewn_sub_tangents(const sub_level *level, sub_masks masks, const double *in
 {
     star at = {level, in, v, level->vert_first[v], level->vert_first[v + 1] - level->vert_first[v], true};
     bool loop = masks.scheme == HEWN_SCHEME_LOOP;
-    sub_rule rule = masks.scheme == HEWN_SCHEME_BILINEAR ? SUB_CORNER : SUB_SMOOTH;
+    sub_rule rule = masks.linear ? SUB_CORNER : SUB_SMOOTH;
     for (int i = 0; i < 6; i++)
         t[i / 3][i % 3] = 0;
     if (at.count < 2)

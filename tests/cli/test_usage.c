@@ -5,7 +5,7 @@
 
 #define NO_LOADER "HEWN_VULKAN_LOADER=/nonexistent/libvulkan.so"
 
-static const char *const commands[] = {"mesh", "info", "check", "repair", "convert", "smooth", "devices"};
+static const char *const commands[] = {"mesh", "info", "check", "repair", "convert", "smooth", "subdivide", "devices"};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static run_result run_words(int code, const char *first, const char *second, const char *third)
@@ -211,6 +211,13 @@ static const mistake mistakes[] = {
     {{"smooth", "a.obj", "-o", "b.obj", "--lock", "boundary,corners"}, "not 'corners'"},
     {{"smooth", "a.obj", "-o", "b.obj", "--lock", "features:0"}, "not 'features:0'"},
     {{"smooth", "a.obj", "-o", "b.obj", "--lock", "labels,"}, "not ''"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--scheme", "doo-sabin"}, "--scheme is catmull-clark, loop or bilinear"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--levels", "17"}, "--levels is at most 16"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--levels", "0"}, "--levels 0 needs --limit"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--boundary", "x"}, "--boundary is edge-and-corner"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--uv", "x"}, "--uv is corners-plus1"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--crease-angle", "200"}, "--crease-angle is from 0 to 180"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--adaptive", "0"}, "--adaptive must be greater than 0"},
     {{"devices", "all"}, "'all'"},
 };
 

@@ -1,5 +1,6 @@
 /* Subdivision against OpenSubdiv: random sheets with boundaries, holes, creases and corners, by every rule. */
 #include "osd_peer.h"
+#include "subdivide/seams.h"
 #include "test_subdivide_support.h"
 
 static void assert_near_all(const char *what, const double *is, const double *wanted, size_t count, double bound,
@@ -113,11 +114,68 @@ static void test_limits_at_lasting_creases(void **state)
     }
 }
 
+/* Values of corners: some seams, some vertices cut, all six rules. */
+static void test_uv_rules(void **state)
+{
+    (void)state;
+    if (!osd_is_there())
+        skip();
+    random_state random = {3};
+    for (int i = 0; i < 300; i++) {
+        hewn_subdivide_desc desc = {.scheme = (hewn_scheme)(i % 3), .levels = 1 + random_below(&random, 3)};
+        desc.uv = (hewn_uv_rule)(i / 3 % HEWN_UV_COUNT);
+        desc.boundary = (hewn_subdivide_boundary)random_below(&random, 2);
+        hewn_model model = make_control(desc.scheme, &random);
+        uint64_t corners = hewn_model_corner_count(&model);
+        uint32_t regions = 1 + random_below(&random, 3), width = 1 + random_below(&random, 4);
+        double *uv = malloc(corners * 2 * sizeof *uv);
+        assert_non_null(uv);
+        for (uint64_t f = 0; f < model.face_count; f++) { /* strips of faces are moved apart */
+            uint64_t begin = model.first ? model.first[f] : 3 * f, end = model.first ? model.first[f + 1] : 3 * f + 3;
+            double shift = (double)(f / width % regions + (i % 5 == 0 ? 0 : f % 7 / 4));
+            for (uint64_t c = begin; c < end; c++)
+                for (uint64_t k = 0; k < 2; k++)
+                    uv[2 * c + k] = model.positions[3 * (size_t)model.corners[c] + k] + 10 * shift;
+        }
+        hewn_polygons polygons = hewn_model_polygons(&model);
+        hewn_subdivision *sub = subdivide(&model, &desc), *seams;
+        uint32_t *sources;
+        assert_int_equal(hewn_sub_seams(sub, uv, 2 * sizeof *uv, desc.uv, &seams, &sources, NULL), HEWN_OK);
+        const sub_level *last = &seams->levels[seams->count];
+        double *control = malloc(seams->levels[0].verts * 2 * sizeof *control);
+        double *own = malloc(last->verts * 2 * sizeof *own), *theirs = malloc(last->corners * 2 * sizeof *theirs);
+        double *points = malloc(hewn_subdivision_vert_count(sub) * 3 * sizeof *points);
+        assert_true(control && own && theirs && points);
+        for (uint32_t v = 0; v < seams->levels[0].verts; v++)
+            memcpy(control + 2 * v, uv + 2 * sources[v], 2 * sizeof *uv);
+        assert_int_equal(hewn_subdivision_refine(seams, control, 2, own, NULL), HEWN_OK);
+        osd_request request = {&polygons, &desc, sub, model.positions, uv};
+        assert_true(osd_refine(&request, points, NULL, NULL, theirs));
+        for (uint32_t c = 0; c < last->corners; c++)
+            for (uint32_t k = 0; k < 2; k++) {
+                double is = own[2 * last->corner_verts[c] + k], wanted = theirs[2 * c + k];
+                if (!(fabs(is - wanted) < 1e-5))
+                    fail_msg("run %d, %s, %s, %s: corner %u is %g instead of %g", i, hewn_scheme_name(desc.scheme),
+                             hewn_uv_rule_name(desc.uv), hewn_subdivide_boundary_name(desc.boundary), c, is, wanted);
+            }
+        free(control);
+        free(own);
+        free(theirs);
+        free(points);
+        free(uv);
+        hewn_free(sources);
+        hewn_subdivision_destroy(&sub);
+        hewn_subdivision_destroy(&seams);
+        hewn_model_destroy(&model);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_control_meshes),
         cmocka_unit_test(test_limits_at_lasting_creases),
+        cmocka_unit_test(test_uv_rules),
     };
     return cmocka_run_group_tests_name("subdivide_osd", tests, NULL, NULL);
 }
