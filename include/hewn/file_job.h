@@ -1,15 +1,34 @@
-/* Jobs from mesh file to mesh file: read, say what it is, repair, convert, write; and a report of exactly what was
- * done. */
+/* Jobs from mesh file to mesh file: read, say what it is, repair, subdivide, smooth, convert,
+ * write; and a report of exactly what
+ * was done. */
 #ifndef HEWN_FILE_JOB_H
 #define HEWN_FILE_JOB_H
 
 #include "hewn/check.h"
 #include "hewn/io.h"
 #include "hewn/job.h"
+#include "hewn/smooth.h"
+#include "hewn/subdivide.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Smoothing in a job; lengths are in the input's unit. */
+typedef struct hewn_file_smooth {
+    hewn_smooth_desc desc; /* its labels, freedom and progress are not looked at */
+    bool lock_labels;      /* vertices where faces differ in label, material, group or object stay */
+    const char *mask;      /* a vertex attribute of one component, 0 (stays) to 1 (bytes: to 255); NULL: none */
+} hewn_file_smooth;
+
+/* Subdivision in a job. */
+typedef struct hewn_file_subdivide {
+    hewn_subdivide_desc desc; /* its creases, corners and progress are not looked at */
+    const char *creases;      /* a file of tags as OBJ has them, lines `t crease 2/1/0 A B SHARPNESS` and
+                                 `t corner 1/1/0 V SHARPNESS` with vertices from 0; NULL: none */
+    double adaptive;          /* see hewn_model_subdivide() */
+    bool triangulate;         /* polygons are cut into triangles first, as Loop's scheme needs */
+} hewn_file_subdivide;
 
 /* Zero everywhere but `input` and `output` copies from format to format. */
 typedef struct hewn_file_job_desc {
@@ -23,10 +42,12 @@ typedef struct hewn_file_job_desc {
     const hewn_unit *to_unit;       /* what the output shall be in; NULL: what its format is always in, else as it is */
     const hewn_axis *to_up;         /* likewise */
     const hewn_repair_desc *repair; /* in the input's unit; its progress is not looked at. NULL: no repair */
-    bool check;                     /* examine what will be written, */
-    bool skip_self_intersections;   /* but for these */
-    double began;                   /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
-    const hewn_progress *progress;  /* or NULL; its stages have the names of the report's */
+    const hewn_file_subdivide *subdivide; /* after repair; NULL: no subdivision */
+    const hewn_file_smooth *smooth;       /* after that; NULL: no smoothing */
+    bool check;                           /* examine what will be written, */
+    bool skip_self_intersections;         /* but for these */
+    double began;                  /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
+    const hewn_progress *progress; /* or NULL; its stages have the names of the report's */
 } hewn_file_job_desc;
 
 /* What a format could not hold of a model. */
@@ -53,9 +74,15 @@ typedef struct hewn_file_report {
     bool up_known;              /* of the output */
     bool repaired;
     hewn_repair_report repair;
+    bool subdivided;
+    hewn_scheme scheme;
+    hewn_subdivide_report subdivide;
+    bool smoothed;
+    hewn_smooth_method smooth_method;
+    hewn_smooth_report smooth;
     hewn_check *check; /* NULL: not examined */
     hewn_file_losses losses;
-    hewn_report_stage stages[8]; /* load, repair, check, write */
+    hewn_report_stage stages[8]; /* load, repair, subdivide, smooth, check, write */
     uint32_t stage_count;
     uint64_t peak_host_bytes;
     double seconds;

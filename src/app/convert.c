@@ -3,29 +3,47 @@
 #include "app/app.h"
 #include "app/file_arguments.h"
 #include "app/record.h"
+#include "app/smooth_arguments.h"
 
 static const hewn_option options[] = {
-    HEWN_OPTION_OUTPUT, HEWN_OPTIONS_FRAME, HEWN_OPTION_FROM, HEWN_OPTION_TO,
-    HEWN_OPTION_REPORT, HEWN_OPTION_QUIET,  HEWN_OPTION_HELP,
+    HEWN_OPTION_OUTPUT,
+    {0, "smooth", "METHOD",
+     "Smooth it on the way by taubin, laplacian, cotan, implicit, bilateral or hc with their defaults; `hewn smooth` "
+     "has "
+     "their parameters."},
+    HEWN_OPTIONS_FRAME,
+    HEWN_OPTION_FROM,
+    HEWN_OPTION_TO,
+    HEWN_OPTION_REPORT,
+    HEWN_OPTION_QUIET,
+    HEWN_OPTION_HELP,
 };
 
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
     hewn_error error = {0};
     hewn_file_arguments file;
-    if (hewn_file_arguments_read(arguments, &file, &error) != HEWN_OK)
+    hewn_file_smooth smooth = {0};
+    const char *method = hewn_arguments_value(arguments, "smooth");
+    hewn_result result = hewn_file_arguments_read(arguments, &file, &error);
+    if (result == HEWN_OK && method)
+        result = hewn_smooth_method_parse(method, "--smooth", &smooth.desc.method, &error);
+    if (result != HEWN_OK)
         return hewn_report_misuse(command, &error);
     hewn_signals_catch();
     hewn_progress progress = hewn_progress_begin(file.quiet);
     hewn_file_report report;
+    file.desc.smooth = method ? &smooth : NULL;
     file.desc.progress = &progress;
     file.desc.began = hewn_started();
-    hewn_result result = hewn_file_convert(&file.desc, &report, &error);
+    result = hewn_file_convert(&file.desc, &report, &error);
     hewn_progress_end();
     if (result != HEWN_OK)
         return hewn_report_misuse(command, &error);
     if (!file.quiet) {
         hewn_record_print(&report);
+        if (method)
+            hewn_smooth_print(&report);
         hewn_notes_print(&file.desc, &report);
     }
     hewn_file_report_destroy(&report);

@@ -10,6 +10,8 @@
 #include "pipeline/losses.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
+#include "pipeline/smooth_step.h"
+#include "pipeline/subdivide_step.h"
 
 /* A job under way. */
 typedef struct file_job {
@@ -132,6 +134,33 @@ static hewn_result repair(file_job *job, hewn_error *error)
     return HEWN_OK;
 }
 
+static hewn_result subdivide(file_job *job, hewn_error *error)
+{
+    hewn_file_report *report = job->report;
+    begin_stage(job);
+    hewn_result result =
+        hewn_subdivide_step(&job->model, job->desc->subdivide, job->desc->progress, &report->subdivide, error);
+    if (result != HEWN_OK)
+        return hewn_blame_input(result, job->desc->input, error);
+    report->subdivided = true;
+    report->scheme = job->desc->subdivide->desc.scheme;
+    end_stage(job, "subdivide");
+    return HEWN_OK;
+}
+
+static hewn_result smooth(file_job *job, hewn_error *error)
+{
+    hewn_file_report *report = job->report;
+    begin_stage(job);
+    hewn_result result = hewn_smooth_step(&job->model, job->desc->smooth, job->desc->progress, &report->smooth, error);
+    if (result != HEWN_OK)
+        return hewn_blame_input(result, job->desc->input, error);
+    report->smoothed = true;
+    report->smooth_method = job->desc->smooth->desc.method;
+    end_stage(job, "smooth");
+    return HEWN_OK;
+}
+
 /* A 3MF file without a unit is in millimetres, and has none for kilometres. */
 static const hewn_unit *unit_for(const file_job *job)
 {
@@ -194,6 +223,10 @@ static hewn_result run(file_job *job, hewn_error *error)
     HEWN_TRY(load(job, error));
     if (desc->repair)
         HEWN_TRY(repair(job, error));
+    if (desc->subdivide)
+        HEWN_TRY(subdivide(job, error));
+    if (desc->smooth)
+        HEWN_TRY(smooth(job, error));
     HEWN_TRY(convert(job, error));
     if (desc->check)
         HEWN_TRY(examine(job, error));

@@ -5,6 +5,8 @@
 #include "pipeline/json_parts.h"
 #include "pipeline/losses.h"
 #include "pipeline/repair_counts.h"
+#include "pipeline/smooth_step.h"
+#include "pipeline/subdivide_step.h"
 
 void hewn_file_report_destroy(hewn_file_report *report)
 {
@@ -97,6 +99,10 @@ hewn_result hewn_file_report_write(const hewn_file_report *report, const char *p
     print_conversion(&json, report);
     if (report->repaired)
         print_repair(&json, &report->repair);
+    if (report->subdivided)
+        hewn_subdivide_json(&json, report->scheme, &report->subdivide);
+    if (report->smoothed)
+        hewn_smooth_json(&json, report->smooth_method, &report->smooth);
     if (report->check)
         hewn_json_check(&json, "certificate", report->check);
     print_losses(&json, &report->losses);

@@ -5,7 +5,7 @@
 
 #define NO_LOADER "HEWN_VULKAN_LOADER=/nonexistent/libvulkan.so"
 
-static const char *const commands[] = {"mesh", "info", "check", "repair", "convert", "devices"};
+static const char *const commands[] = {"mesh", "info", "check", "repair", "convert", "smooth", "subdivide", "devices"};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static run_result run_words(int code, const char *first, const char *second, const char *third)
@@ -206,6 +206,25 @@ static const mistake mistakes[] = {
     {{"info"}, "which file?"},
     {{"info", "a.glb", "-D", "x=1"}, "a.glb is a mesh"},
     {{"info", "a.txt"}, "a scene ends in .lua or .vm"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--method", "magic"}, "--method is taubin"},
+    {{"convert", "a.obj", "-o", "b.obj", "--smooth", "magic"}, "--smooth is taubin"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--iterations", "0"}, "--iterations must be at least 1"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--step", "1"}, "--step is for cotan and implicit, not for taubin"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--method", "hc", "--passband", "1"}, "--passband is for taubin, not for hc"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--strength", "0"}, "--strength must be greater than 0"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--strength", "1.5"}, "--strength is at most 1"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--passband", "2"}, "--passband must be below 2"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--push", "1"}, "--push is for hc"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--lock", "boundary,corners"}, "not 'corners'"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--lock", "features:0"}, "not 'features:0'"},
+    {{"smooth", "a.obj", "-o", "b.obj", "--lock", "labels,"}, "not ''"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--scheme", "doo-sabin"}, "--scheme is catmull-clark, loop or bilinear"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--levels", "17"}, "--levels is at most 16"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--levels", "0"}, "--levels 0 needs --limit"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--boundary", "x"}, "--boundary is edge-and-corner"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--uv", "x"}, "--uv is corners-plus1"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--crease-angle", "200"}, "--crease-angle is from 0 to 180"},
+    {{"subdivide", "a.obj", "-o", "b.obj", "--adaptive", "0"}, "--adaptive must be greater than 0"},
     {{"devices", "all"}, "'all'"},
 };
 

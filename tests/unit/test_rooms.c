@@ -22,6 +22,8 @@ static const room rooms[] = {
     {"base", ""},
     {"geom", "base"},
     {"mesh", "base geom"},
+    {"smooth", "base geom mesh"},
+    {"subdivide", "base geom mesh"},
     {"field", "base geom"},
     {"gpu", "base"},
     {"eval", "base geom field gpu"},
@@ -29,7 +31,7 @@ static const room rooms[] = {
     {"render", "base geom field gpu eval"},
     {"scene", "base geom field"},
     {"io", "base geom mesh"},
-    {"pipeline", "base geom mesh field gpu eval iso render scene io"},
+    {"pipeline", "base geom mesh smooth subdivide field gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -41,10 +43,11 @@ typedef struct header {
 } header;
 
 static const header headers[] = {
-    {"base", "open"},   {"field", "open"},      {"triangles", "open"},    {"device", "gpu"},
-    {"check", "mesh"},  {"units", "open"},      {"model", "mesh"},        {"mesh", "mesh"},
-    {"repair", "mesh"}, {"mesh_views", "mesh"}, {"extract", "iso"},       {"scene", "scene"},
-    {"io", "io"},       {"job", "pipeline"},    {"file_job", "pipeline"}, {"hewn", "hewn"},
+    {"base", "open"},     {"field", "open"},          {"triangles", "open"},    {"device", "gpu"},
+    {"check", "mesh"},    {"units", "open"},          {"model", "mesh"},        {"mesh", "mesh"},
+    {"repair", "mesh"},   {"mesh_views", "mesh"},     {"extract", "iso"},       {"scene", "scene"},
+    {"io", "io"},         {"job", "pipeline"},        {"file_job", "pipeline"}, {"hewn", "hewn"},
+    {"smooth", "smooth"}, {"subdivide", "subdivide"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
