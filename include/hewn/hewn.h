@@ -17,5 +17,7 @@
 #include "hewn/scene.h"
 #include "hewn/triangles.h"
 #include "hewn/units.h"
+#include "hewn/volume.h"
+#include "hewn/volume_io.h"
 
 #endif

@@ -21,6 +21,7 @@ typedef struct room {
 static const room rooms[] = {
     {"base", ""},
     {"geom", "base"},
+    {"volume", "base geom"},
     {"mesh", "base geom"},
     {"field", "base geom"},
     {"gpu", "base"},
@@ -28,8 +29,8 @@ static const room rooms[] = {
     {"iso", "base geom field gpu eval"},
     {"render", "base geom field gpu eval"},
     {"scene", "base geom field"},
-    {"io", "base geom mesh"},
-    {"pipeline", "base geom mesh field gpu eval iso render scene io"},
+    {"io", "base geom volume mesh"},
+    {"pipeline", "base geom volume mesh field gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -41,10 +42,10 @@ typedef struct header {
 } header;
 
 static const header headers[] = {
-    {"base", "open"},   {"field", "open"},      {"triangles", "open"},    {"device", "gpu"},
-    {"check", "mesh"},  {"units", "open"},      {"model", "mesh"},        {"mesh", "mesh"},
-    {"repair", "mesh"}, {"mesh_views", "mesh"}, {"extract", "iso"},       {"scene", "scene"},
-    {"io", "io"},       {"job", "pipeline"},    {"file_job", "pipeline"}, {"hewn", "hewn"},
+    {"base", "open"},   {"field", "open"},    {"triangles", "open"}, {"device", "gpu"},   {"check", "mesh"},
+    {"units", "open"},  {"model", "mesh"},    {"mesh", "mesh"},      {"repair", "mesh"},  {"mesh_views", "mesh"},
+    {"extract", "iso"}, {"scene", "scene"},   {"io", "io"},          {"job", "pipeline"}, {"file_job", "pipeline"},
+    {"hewn", "hewn"},   {"volume", "volume"}, {"volume_io", "io"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
