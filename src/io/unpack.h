@@ -20,9 +20,9 @@ typedef enum hewn_packing {
     HEWN_PACKING_BZIP2
 } hewn_packing;
 
-/* The first `wanted` bytes of one packed stream, or all where it ends before; what follows is not looked at. `*out` is
- * the caller's (hewn_free); its memory grows with what comes out, in doublings, never past `wanted`. HEWN_BAD_INPUT for
- * data that are damaged or end in the middle; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. */
+/* One packed stream of at most `wanted` bytes unpacked; what follows it is not looked at. `*out` is the caller's
+ * (hewn_free); its memory grows with what comes out, in doublings, never past `wanted`. HEWN_BAD_INPUT for data that
+ * are damaged, end in the middle or hold more; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. */
 hewn_result hewn_unpack_some(const char *bytes, size_t length, hewn_packing packing, size_t wanted, const char *name,
                              const hewn_progress *progress, char **out, size_t *out_length, hewn_error *error);
 

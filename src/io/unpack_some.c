@@ -101,7 +101,7 @@ static bool grow(char **block, size_t *room, size_t made, size_t wanted)
     return true;
 }
 
-/* All that is wanted is there; goes on to the checksum at the stream's end, unless more comes out. */
+/* All that is wanted is there; goes on to the checksum at the stream's end. */
 static hewn_result check_end(stream *job, const char *bytes, size_t length, size_t at, const char *name,
                              hewn_error *error)
 {
@@ -110,7 +110,9 @@ static hewn_result check_end(stream *job, const char *bytes, size_t length, size
         unsigned in = length - at < STEP ? (unsigned)(length - at) : STEP, given = 1;
         step_result step = advance(job, bytes + at, &in, &more, &given);
         at += in;
-        if (step == STEP_ENDS || given > 0)
+        if (given > 0)
+            return hewn_fail_at(error, HEWN_BAD_INPUT, name, 0, "the compressed data hold more than the header tells");
+        if (step == STEP_ENDS)
             return HEWN_OK;
         if (step != STEP_GOES_ON)
             return hewn_fail_at(error, HEWN_BAD_INPUT, name, 0, "the compressed data are damaged");
