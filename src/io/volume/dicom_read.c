@@ -13,6 +13,7 @@
 #include "base/progress.h"
 #include "io/shim/dicom.h"
 #include "io/shim/module.h"
+#include "io/volume/apart.h"
 #include "io/volume/formats.h"
 
 enum { MESSAGE = 256 };
@@ -89,7 +90,7 @@ static hewn_result read_one(const hewn_volume_source *source, const hewn_dicom_m
     return result == HEWN_DICOM_OK ? HEWN_OK : failure_of(result, source->name, message, error);
 }
 
-hewn_result hewn_dicom_read(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
+static hewn_result read_file(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
 {
     hewn_dicom *file;
     hewn_dicom_facts facts;
@@ -390,7 +391,7 @@ static hewn_result read_series(series *all, hewn_volume *volume, hewn_error *err
         hewn_volume_source source;
         HEWN_TRY(hewn_volume_source_open(all->slices[0].path, all->desc, &source, error));
         hewn_volume_destroy(volume);
-        hewn_result result = hewn_dicom_read(&source, volume, error);
+        hewn_result result = read_file(&source, volume, error);
         hewn_volume_source_close(&source);
         return result;
     }
@@ -402,8 +403,7 @@ static hewn_result read_series(series *all, hewn_volume *volume, hewn_error *err
     return stack(all, step, volume, error);
 }
 
-hewn_result hewn_dicom_read_folder(const char *path, const hewn_volume_read_desc *desc, hewn_volume *out,
-                                   hewn_error *error)
+static hewn_result read_folder(const char *path, const hewn_volume_read_desc *desc, hewn_volume *out, hewn_error *error)
 {
     series all = {.folder = path, .desc = desc};
     hewn_volume volume = hewn_volume_blank();
@@ -422,4 +422,25 @@ hewn_result hewn_dicom_read_folder(const char *path, const hewn_volume_read_desc
     else
         hewn_volume_destroy(&volume);
     return result;
+}
+
+/* --- apart -------------------------------------------------------------------------------------------------------- */
+
+static hewn_result read_apart(const hewn_apart *job, const hewn_volume_read_desc *desc, hewn_volume *out,
+                              hewn_error *error)
+{
+    return job->source ? read_file(job->source, out, error) : read_folder(job->path, desc, out, error);
+}
+
+hewn_result hewn_dicom_read(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
+{
+    const hewn_apart job = {.read = read_apart, .source = source, .name = source->name, .desc = source->desc};
+    return hewn_volume_read_apart(&job, out, error);
+}
+
+hewn_result hewn_dicom_read_folder(const char *path, const hewn_volume_read_desc *desc, hewn_volume *out,
+                                   hewn_error *error)
+{
+    const hewn_apart job = {.read = read_apart, .path = path, .name = path, .desc = desc};
+    return hewn_volume_read_apart(&job, out, error);
 }

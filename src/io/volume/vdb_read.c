@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "io/shim/module.h"
 #include "io/shim/vdb.h"
+#include "io/volume/apart.h"
 #include "io/volume/formats.h"
 #include <string.h>
 
@@ -57,7 +58,7 @@ static hewn_result read_grid(const hewn_volume_source *source, const hewn_vdb_mo
     return HEWN_OK;
 }
 
-hewn_result hewn_vdb_read(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
+static hewn_result read_here(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
 {
     hewn_vdb *grid;
     hewn_vdb_facts facts;
@@ -81,4 +82,17 @@ hewn_result hewn_vdb_read(hewn_volume_source *source, hewn_volume *out, hewn_err
     volume.name = hewn_volume_text(facts.name, strlen(facts.name));
     *out = volume;
     return HEWN_OK;
+}
+
+static hewn_result read_apart(const hewn_apart *job, const hewn_volume_read_desc *desc, hewn_volume *out,
+                              hewn_error *error)
+{
+    (void)desc; /* the source has it */
+    return read_here(job->source, out, error);
+}
+
+hewn_result hewn_vdb_read(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
+{
+    const hewn_apart job = {.read = read_apart, .source = source, .name = source->name, .desc = source->desc};
+    return hewn_volume_read_apart(&job, out, error);
 }
