@@ -19,5 +19,7 @@
 #include "hewn/subdivide.h"
 #include "hewn/triangles.h"
 #include "hewn/units.h"
+#include "hewn/volume.h"
+#include "hewn/volume_io.h"
 
 #endif

@@ -6,6 +6,7 @@
 #include "app/file_arguments.h"
 #include "app/mesh_info.h"
 #include "app/scene_arguments.h"
+#include "app/volume_info.h"
 #include "base/error.h"
 #include "pipeline/json_parts.h"
 
@@ -13,9 +14,11 @@ static const hewn_option options[] = {
     {0, "json", NULL, "Print JSON."},
     {'D', NULL, "NAME=VALUE", "Set a parameter of the scene. May be repeated."},
     {0, "from", "FORMAT",
-     "Read the file as lua or vm, or as a mesh in glb, gltf, obj, ply, stl or off. Default: by its extension; needed "
-     "where FILE is `-`."},
+     "Read the file as lua or vm, as a mesh in glb, gltf, obj, ply, stl or off, or as a volume in nifti, nrrd, "
+     "metaimage, "
+     "raw, npy, inr, tiff, vdb or dicom. Default: by its extension, else by how it begins; needed where FILE is `-`."},
     {0, "allow-path", NULL, "Let the scene read files outside its own folder."},
+    HEWN_OPTIONS_VOLUME,
     {'h', "help", NULL, "Print this help."},
 };
 
@@ -204,12 +207,42 @@ static hewn_result run_mesh(const hewn_arguments *arguments, hewn_mesh_format fo
     HEWN_TRY(hewn_input_argument_read(arguments, &path, error));
     if (hewn_arguments_has(arguments, "D"))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "-D sets a parameter of a scene, but %s is a mesh", path);
+    if (hewn_volume_arguments_any(arguments))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the options of volumes do not go with %s, which is a mesh",
+                         path);
     return hewn_mesh_tell(path, format, hewn_arguments_has(arguments, "json"), error);
+}
+
+/* Whether the file is to be read as a volume. Who says what a raw file holds means one. */
+static bool wants_volume(const hewn_arguments *arguments, hewn_volume_format *format)
+{
+    const char *from = hewn_arguments_value(arguments, "from");
+    const char *path = arguments->operand_count > 0 ? arguments->operands[0] : "";
+    *format = HEWN_VOLUME_UNKNOWN;
+    if (from)
+        return hewn_volume_format_find(from, format);
+    if (hewn_volume_format_of_file(path) == HEWN_VOLUME_UNKNOWN && hewn_arguments_has(arguments, "dims"))
+        *format = HEWN_VOLUME_RAW;
+    return *format == HEWN_VOLUME_RAW || hewn_volume_format_of_file(path) != HEWN_VOLUME_UNKNOWN;
+}
+
+static hewn_result run_volume(const hewn_arguments *arguments, hewn_volume_format format, hewn_error *error)
+{
+    const char *path;
+    hewn_volume_arguments wanted;
+    HEWN_TRY(hewn_input_argument_read(arguments, &path, error));
+    if (hewn_arguments_has(arguments, "D"))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "-D sets a parameter of a scene, but %s is a volume", path);
+    HEWN_TRY(hewn_volume_arguments_read(arguments, &wanted, error));
+    wanted.read.format = format;
+    return hewn_volume_tell(path, &wanted, hewn_arguments_has(arguments, "json"), error);
 }
 
 static hewn_result run_scene(const hewn_arguments *arguments, hewn_error *error)
 {
     hewn_scene_arguments scene;
+    if (hewn_volume_arguments_any(arguments))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the options of volumes do not go with a scene");
     hewn_result result = hewn_scene_arguments_read(arguments, &scene, error);
     if (result == HEWN_OK)
         result = tell_scene(&scene.desc, hewn_arguments_has(arguments, "json"), error);
@@ -221,23 +254,33 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
     hewn_error error = {0};
     hewn_mesh_format format;
-    hewn_result result =
-        wants_mesh(arguments, &format) ? run_mesh(arguments, format, &error) : run_scene(arguments, &error);
+    hewn_volume_format volume;
+    hewn_result result = HEWN_OK;
+    if (wants_mesh(arguments, &format))
+        result = run_mesh(arguments, format, &error);
+    else if (wants_volume(arguments, &volume))
+        result = run_volume(arguments, volume, &error);
+    else
+        result = run_scene(arguments, &error);
     return result == HEWN_OK ? 0 : hewn_report_misuse(command, &error);
 }
 
 const hewn_command hewn_command_info = {
     .name = "info",
-    .summary = "tell what is in a scene or a mesh file",
+    .summary = "tell what is in a scene, mesh or volume file",
     .usage = "FILE [OPTION]...",
     .about = "Of a scene (.lua, .vm): its parameters with default, value, range and help, its\n"
              "bounds, units, up axis, files and the size of its field. Of a mesh (.glb, .gltf,\n"
              ".obj, .ply, .stl, .off, also with .gz): its counts, unit, axes and attributes,\n"
-             "and what `hewn check` finds but for self-intersections. Needs no device.\n",
+             "and what `hewn check` finds but for self-intersections. Of a volume (.nii, .hdr,\n"
+             ".nrrd, .nhdr, .mha, .mhd, .raw, .npy, .inr, .tif, .vdb, .dcm, also with .gz, or a\n"
+             "folder of DICOM): its voxels, their type, place and range. Needs no device.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
              "  hewn info assets/scenes/menger.lua\n"
-             "  hewn info bracket.glb --json\n",
+             "  hewn info bracket.glb --json\n"
+             "  hewn info head.nii.gz --iso otsu\n"
+             "  hewn info ct.raw --dims 512,512,300 --type int16 --spacing 0.7,0.7,1\n",
     .run = run,
 };

@@ -21,6 +21,7 @@ typedef struct room {
 static const room rooms[] = {
     {"base", ""},
     {"geom", "base"},
+    {"volume", "base geom"},
     {"mesh", "base geom"},
     {"smooth", "base geom mesh"},
     {"subdivide", "base geom mesh"},
@@ -30,8 +31,8 @@ static const room rooms[] = {
     {"iso", "base geom field gpu eval"},
     {"render", "base geom field gpu eval"},
     {"scene", "base geom field"},
-    {"io", "base geom mesh"},
-    {"pipeline", "base geom mesh smooth subdivide field gpu eval iso render scene io"},
+    {"io", "base geom volume mesh"},
+    {"pipeline", "base geom volume mesh smooth subdivide field gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -47,7 +48,7 @@ static const header headers[] = {
     {"check", "mesh"},    {"units", "open"},          {"model", "mesh"},        {"mesh", "mesh"},
     {"repair", "mesh"},   {"mesh_views", "mesh"},     {"extract", "iso"},       {"scene", "scene"},
     {"io", "io"},         {"job", "pipeline"},        {"file_job", "pipeline"}, {"hewn", "hewn"},
-    {"smooth", "smooth"}, {"subdivide", "subdivide"},
+    {"smooth", "smooth"}, {"subdivide", "subdivide"}, {"volume", "volume"},     {"volume_io", "io"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)

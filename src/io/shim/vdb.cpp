@@ -1,0 +1,222 @@
+#include "io/shim/vdb.h"
+
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <istream>
+#include <memory>
+#include <new>
+#include <streambuf>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Dense.h>
+
+struct hewn_vdb {
+    virtual ~hewn_vdb() = default;
+    virtual void copy_box(const openvdb::CoordBBox &box, void *out) const = 0;
+    virtual bool leaf(uint64_t index, int32_t origin[3], void *samples) const = 0;
+    virtual void tell(hewn_vdb_facts *facts) const = 0;
+};
+
+namespace
+{
+
+/* A stream over bytes that are there already. */
+class memory_buffer : public std::streambuf
+{
+  public:
+    memory_buffer(const char *bytes, size_t length)
+    {
+        char *begin = const_cast<char *>(bytes); /* streambuf's type; it is only read */
+        setg(begin, begin, begin + length);
+    }
+
+  protected:
+    pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override
+    {
+        char *base = from == std::ios_base::beg ? eback() : from == std::ios_base::cur ? gptr() : egptr();
+        if (offset < eback() - base || offset > egptr() - base)
+            return pos_type(off_type(-1));
+        setg(eback(), base + offset, egptr());
+        return pos_type(gptr() - eback());
+    }
+    pos_type seekpos(pos_type position, std::ios_base::openmode mode) override
+    {
+        return seekoff(off_type(position), std::ios_base::beg, mode);
+    }
+};
+
+template <typename Grid>
+constexpr hewn_vdb_type type_of()
+{
+    using Value = typename Grid::ValueType;
+    return std::is_same_v<Value, float>     ? HEWN_VDB_FLOAT
+           : std::is_same_v<Value, double>  ? HEWN_VDB_DOUBLE
+           : std::is_same_v<Value, int32_t> ? HEWN_VDB_INT32
+           : std::is_same_v<Value, int64_t> ? HEWN_VDB_INT64
+                                            : HEWN_VDB_BOOL;
+}
+
+template <typename Grid>
+class held_grid : public hewn_vdb
+{
+    using Leaf = typename Grid::TreeType::LeafNodeType;
+    typename Grid::ConstPtr grid;
+    std::vector<const Leaf *> leaves;
+
+  public:
+    explicit held_grid(typename Grid::ConstPtr from) : grid(std::move(from))
+    {
+        grid->tree().getNodes(leaves);
+    }
+
+    void copy_box(const openvdb::CoordBBox &box, void *out) const override
+    {
+        using Dense = openvdb::tools::Dense<typename Grid::ValueType, openvdb::tools::LayoutXYZ>;
+        Dense dense(box, static_cast<typename Grid::ValueType *>(out));
+        openvdb::tools::copyToDense(grid->tree(), dense);
+    }
+
+    bool leaf(uint64_t index, int32_t origin[3], void *samples) const override
+    {
+        const Leaf *node = leaves.at(index);
+        for (int axis = 0; axis < 3; axis++)
+            origin[axis] = node->origin()[axis];
+        if constexpr (std::is_same_v<typename Grid::ValueType, bool>)
+            return false;
+        else
+            std::memcpy(samples, node->buffer().data(), sizeof(typename Grid::ValueType) * HEWN_VDB_LEAF);
+        return true;
+    }
+
+    void tell(hewn_vdb_facts *facts) const override
+    {
+        openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+        openvdb::Mat4d matrix = grid->transform().baseMap()->getAffineMap()->getMat4();
+        std::snprintf(facts->name, sizeof facts->name, "%s", grid->getName().c_str());
+        facts->type = type_of<Grid>();
+        facts->level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+        facts->background = double(grid->background());
+        facts->leaf_count = leaves.size();
+        for (int row = 0; row < 4; row++)
+            for (int column = 0; column < 4; column++)
+                facts->to_world[4 * row + column] = matrix(column, row); /* OpenVDB multiplies rows from the left */
+        for (int axis = 0; axis < 3; axis++) {
+            facts->lo[axis] = box.min()[axis];
+            facts->hi[axis] = box.max()[axis];
+        }
+    }
+};
+
+template <typename Grid>
+bool hold(const openvdb::GridBase::Ptr &base, std::unique_ptr<hewn_vdb> *out)
+{
+    if (auto grid = openvdb::gridPtrCast<Grid>(base))
+        *out = std::make_unique<held_grid<Grid>>(grid);
+    return bool(*out);
+}
+
+/* Whether a grid is of scalars, and then held. */
+bool hold_any(const openvdb::GridBase::Ptr &base, std::unique_ptr<hewn_vdb> *out)
+{
+    return hold<openvdb::FloatGrid>(base, out) || hold<openvdb::DoubleGrid>(base, out) ||
+           hold<openvdb::Int32Grid>(base, out) || hold<openvdb::Int64Grid>(base, out) ||
+           hold<openvdb::BoolGrid>(base, out);
+}
+
+std::string list(const openvdb::GridPtrVec &grids)
+{
+    std::string text;
+    for (const auto &grid : grids)
+        if (grid)
+            text += (text.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
+    return text.empty() ? "none" : text;
+}
+
+hewn_vdb_result fail(char *message, size_t room, const std::string &text)
+{
+    std::snprintf(message, room, "%s", text.c_str());
+    for (char *at = message; *at; at++)
+        if (static_cast<unsigned char>(*at) < 0x20 || static_cast<unsigned char>(*at) >= 0x7f)
+            *at = '?';
+    return HEWN_VDB_BAD;
+}
+
+hewn_vdb_result choose(const openvdb::GridPtrVec &grids, const char *name, std::unique_ptr<hewn_vdb> *out,
+                       char *message, size_t room)
+{
+    for (const auto &grid : grids) {
+        if (!grid || (name && grid->getName() != name) || !(hold_any(grid, out) || name))
+            continue;
+        if (!*out)
+            return fail(message, room,
+                        "grid '" + grid->getName() + "' is of " + grid->valueType() + ", not of scalars");
+        if (!grid->transform().isLinear())
+            return fail(message, room, "grid '" + grid->getName() + "' lies in a frustum, not in a lattice");
+        if (grid->activeVoxelCount() == 0)
+            return fail(message, room, "grid '" + grid->getName() + "' has no active voxel");
+        return HEWN_VDB_OK;
+    }
+    return fail(message, room,
+                (name ? "there is no grid '" + std::string(name) + "'; there are: "
+                      : std::string("there is no grid of scalars; there are: ")) +
+                    list(grids));
+}
+
+hewn_vdb_result open_grid(const char *bytes, size_t length, const char *name, hewn_vdb **out, hewn_vdb_facts *facts,
+                          char *message, size_t room)
+try {
+    *out = nullptr;
+    *facts = hewn_vdb_facts{};
+    openvdb::initialize();
+    memory_buffer buffer(bytes, length);
+    std::istream stream(&buffer);
+    openvdb::GridPtrVecPtr grids = openvdb::io::Stream(stream, false).getGrids();
+    std::unique_ptr<hewn_vdb> held;
+    hewn_vdb_result result = choose(*grids, name, &held, message, room);
+    if (result == HEWN_VDB_OK) {
+        held->tell(facts);
+        *out = held.release();
+    }
+    return result;
+} catch (const std::bad_alloc &) {
+    std::snprintf(message, room, "out of memory for the grids");
+    return HEWN_VDB_OUT_OF_MEMORY;
+} catch (const std::exception &failure) {
+    return fail(message, room, failure.what());
+} catch (...) {
+    return fail(message, room, "OpenVDB cannot read it");
+}
+
+void close_grid(hewn_vdb **grid)
+{
+    delete *grid;
+    *grid = nullptr;
+}
+
+hewn_vdb_result copy_box(const hewn_vdb *grid, const int32_t lo[3], const int32_t hi[3], void *out)
+try {
+    grid->copy_box(openvdb::CoordBBox(lo[0], lo[1], lo[2], hi[0], hi[1], hi[2]), out);
+    return HEWN_VDB_OK;
+} catch (const std::bad_alloc &) {
+    return HEWN_VDB_OUT_OF_MEMORY;
+} catch (...) {
+    return HEWN_VDB_BAD;
+}
+
+bool copy_leaf(const hewn_vdb *grid, uint64_t index, int32_t origin[3], void *samples)
+try {
+    return grid->leaf(index, origin, samples);
+} catch (...) {
+    return false;
+}
+
+} // namespace
+
+/* io/shim/module.h looks for this name. */
+extern "C" __attribute__((visibility("default"))) const hewn_vdb_module hewn_module_table;
+const hewn_vdb_module hewn_module_table = {open_grid, close_grid, copy_box, copy_leaf};

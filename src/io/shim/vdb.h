@@ -1,0 +1,61 @@
+/* OpenVDB behind a C face: a module (io/shim/module.h) with one table of functions. No exception leaves it. */
+#ifndef HEWN_SRC_IO_SHIM_VDB_H
+#define HEWN_SRC_IO_SHIM_VDB_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum hewn_vdb_type {
+    HEWN_VDB_FLOAT,
+    HEWN_VDB_DOUBLE,
+    HEWN_VDB_INT32,
+    HEWN_VDB_INT64,
+    HEWN_VDB_BOOL
+} hewn_vdb_type;
+
+typedef enum hewn_vdb_result { HEWN_VDB_OK, HEWN_VDB_BAD, HEWN_VDB_OUT_OF_MEMORY } hewn_vdb_result;
+
+enum { HEWN_VDB_LEAF = 512 }; /* samples of a leaf, 8 x 8 x 8 */
+
+/* What is known of a grid. Its lattice has a sample at every (i, j, k) of whole numbers; all but a few are background.
+ */
+typedef struct hewn_vdb_facts {
+    char name[256];
+    hewn_vdb_type type;
+    bool level_set;       /* signed distances, negative inside */
+    int32_t lo[3], hi[3]; /* the box of its active samples, both ends included */
+    double to_world[16];  /* of (i, j, k, 1), row-major */
+    double background;
+    uint64_t leaf_count;
+} hewn_vdb_facts;
+
+/* One grid of a file, in memory. May be read by several threads at once. */
+typedef struct hewn_vdb hewn_vdb;
+
+typedef struct hewn_vdb_module {
+    /* Reads a file from memory, which may go away afterwards, and keeps one grid of scalars: the one of this name, or
+     * the first where it is NULL. A message of at most `room` bytes says why that failed. */
+    hewn_vdb_result (*open)(const char *bytes, size_t length, const char *name, hewn_vdb **out, hewn_vdb_facts *facts,
+                            char *message, size_t room);
+    void (*close)(hewn_vdb **grid);
+
+    /* Writes the samples of a box, both ends included, i fastest, in the grid's type (a bool is a byte of 0 or 1). */
+    hewn_vdb_result (*copy_box)(const hewn_vdb *grid, const int32_t lo[3], const int32_t hi[3], void *out);
+
+    /* Leaf `index` of `leaf_count`, in OpenVDB's order, which depends on the file alone: where its first sample is, and
+     * its samples, that at (x, y, z) from there being number 64 x + 8 y + z, in the grid's type. Leaves hold all
+     * samples of a level set's narrow band, so its surface crosses edges of samples of leaves only; the sample past a
+     * leaf's last is in its neighbour, or background (negative inside of a level set). For a way that makes no grid
+     * dense. False for a grid of bool, which has no samples as such. */
+    bool (*leaf)(const hewn_vdb *grid, uint64_t index, int32_t origin[3], void *samples);
+} hewn_vdb_module;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,54 @@
+/* Samples of any type, a stretch at a time. */
+#ifndef HEWN_SRC_VOLUME_VOXEL_H
+#define HEWN_SRC_VOLUME_VOXEL_H
+
+#include <string.h>
+
+#include "hewn/volume.h"
+
+/* Does `X(enumerator, C type)` for each type whose samples C's arithmetic takes; halves are apart. */
+#define HEWN_VOXEL_TYPES(X)                                                                                            \
+    X(HEWN_VOXEL_INT8, int8_t)                                                                                         \
+    X(HEWN_VOXEL_UINT8, uint8_t)                                                                                       \
+    X(HEWN_VOXEL_INT16, int16_t)                                                                                       \
+    X(HEWN_VOXEL_UINT16, uint16_t)                                                                                     \
+    X(HEWN_VOXEL_INT32, int32_t)                                                                                       \
+    X(HEWN_VOXEL_UINT32, uint32_t)                                                                                     \
+    X(HEWN_VOXEL_INT64, int64_t)                                                                                       \
+    X(HEWN_VOXEL_UINT64, uint64_t)                                                                                     \
+    X(HEWN_VOXEL_FLOAT, float)                                                                                         \
+    X(HEWN_VOXEL_DOUBLE, double)
+
+/* The float that an IEEE 754 half is, bit for bit; NaN stays NaN. */
+static inline float hewn_float_of_half(uint16_t half)
+{
+    uint32_t sign = (uint32_t)(half & 0x8000) << 16, exponent = half >> 10 & 0x1f, fraction = half & 0x3ff, bits;
+    if (exponent == 0x1f) {
+        bits = sign | 0x7f800000u | fraction << 13;
+    } else if (exponent > 0) {
+        bits = sign | (exponent + 112) << 23 | fraction << 13;
+    } else {
+        float tiny = (float)fraction * 0x1p-24f; /* exact, 0 too */
+        memcpy(&bits, &tiny, sizeof bits);
+        bits |= sign;
+    }
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* Samples `at` to `at + count - 1` as doubles. */
+void hewn_voxels_to_double(const hewn_volume *volume, uint64_t at, size_t count, double *out);
+
+/* Calls that go through a frame do so in stretches of this many samples, whatever the number of threads. */
+enum { HEWN_VOXEL_STRETCH = 4096 };
+
+static inline uint64_t hewn_volume_stretches(const hewn_volume *volume)
+{
+    return (hewn_volume_frame_size(volume) + HEWN_VOXEL_STRETCH - 1) / HEWN_VOXEL_STRETCH;
+}
+
+/* Stretch `index` of a frame as doubles; how many samples it has. */
+size_t hewn_volume_stretch(const hewn_volume *volume, uint64_t frame, uint64_t index, double out[HEWN_VOXEL_STRETCH]);
+
+#endif

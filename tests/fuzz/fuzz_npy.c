@@ -1,0 +1,8 @@
+/* NumPy's arrays from memory. */
+#include "fuzz_volume.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    fuzz_volume(hewn_npy_read, data, size);
+    return 0;
+}

@@ -1,0 +1,8 @@
+/* TIFF stacks from memory. */
+#include "fuzz_volume.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    fuzz_volume(hewn_tiff_read, data, size);
+    return 0;
+}

@@ -1,0 +1,22 @@
+/* Writing .vdb files for tests, by OpenVDB itself. */
+#ifndef HEWN_TEST_VDB_WRITE_H
+#define HEWN_TEST_VDB_WRITE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A file with these grids, in this order: "velocity" of vectors, "fog" of floats, "half" of the same kept as halves,
+ * "wide" of doubles, "count" of 32-bit whole numbers, "mask" of bools, "frustum" of floats in no lattice, "empty".
+ * Voxel (x, y, z) is values[x + dims[0] (y + dims[1] z)] (0: not set), at (x, y, z) + first in the lattice; `to_world`
+ * is row-major. */
+void vdb_write(const char *path, const int32_t dims[3], const double *values, const int32_t first[3],
+               const double to_world[16]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
