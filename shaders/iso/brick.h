@@ -63,18 +63,22 @@ uvec4 lower_slots(Uints links, uint link)
     return uvec4(links.at[link], links.at[link + 1u], links.at[link + 2u], links.at[link + 3u]);
 }
 
-/* Bit i of the result is set where sample i of the word has a coordinate below `limit` on each axis: cells exist there,
- * and edges along an axis do where only that axis is asked. */
-uint below(uvec3 base, uint word, uvec3 limit)
+/* Bit i of component a is set where sample i of the word has a coordinate below `limit` along axis a. */
+uvec3 below_each(uvec3 base, uint word, uvec3 limit)
 {
     uint z = base.z + (word >> 1);
     uint columns = limit.x > base.x ? min(limit.x - base.x, 8u) : 0u;
     uint row = columns == 8u ? 0xFFu : (1u << columns) - 1u;
     uint y = base.y + 4u * (word & 1u);
     uint rows = limit.y > y ? min(limit.y - y, 4u) : 0u;
-    uint mask = row * 0x01010101u;
-    mask = rows == 4u ? mask : mask & ((1u << 8u * rows) - 1u);
-    return z < limit.z ? mask : 0u;
+    return uvec3(row * 0x01010101u, rows == 4u ? ~0u : (1u << 8u * rows) - 1u, z < limit.z ? ~0u : 0u);
+}
+
+/* The same for all axes at once: cells exist there. */
+uint below(uvec3 base, uint word, uvec3 limit)
+{
+    uvec3 each = below_each(base, word, limit);
+    return each.x & each.y & each.z;
 }
 
 /* Which cells between two layers' words hold surface. */

@@ -42,8 +42,9 @@ void main()
         for (uint half_of = 0u; half_of < 2u; half_of++) {
             uint word = 2u * z + half_of;
             uvec4 under = lower.rows[half_of], over = upper.rows[half_of];
-            crossings += write_crossed(push.edges, slot, word, under, over, base, cells);
-            triangle_count += count_triangles(under, over, surface_cells(under, over, below(base, word, cells)));
+            uvec3 exist = below_each(base, word, cells);
+            crossings += write_crossed(push.edges, slot, word, under, over, exist);
+            triangle_count += count_triangles(under, over, surface_cells(under, over, exist.x & exist.y & exist.z));
         }
         lower = upper;
     }

@@ -4,13 +4,11 @@
 
 #include "iso/brick.h"
 
-/* Writes the crossed edges that leave a word's samples upward, and counts them. */
-uint write_crossed(Uints edges, uint slot, uint word, uvec4 lower, uvec4 upper, uvec3 base, uvec3 cells)
+/* Writes the crossed edges that leave a word's samples upward, and counts them. `exist`: below_each() of the cells,
+ * since an edge along an axis is there where a cell follows along that axis. */
+uint write_crossed(Uints edges, uint slot, uint word, uvec4 lower, uvec4 upper, uvec3 exist)
 {
-    uvec3 crossed = lower.xxx ^ uvec3(lower.yz, upper.x);
-    crossed.x &= below(base, word, uvec3(cells.x, ~0u, ~0u));
-    crossed.y &= below(base, word, uvec3(~0u, cells.y, ~0u));
-    crossed.z &= below(base, word, uvec3(~0u, ~0u, cells.z));
+    uvec3 crossed = (lower.xxx ^ uvec3(lower.yz, upper.x)) & exist;
     uint at = 2u * (slot * HEWN_BRICK_EDGE_WORDS + word);
     edges.at[at] = crossed.x;
     edges.at[at + 2u * HEWN_BRICK_WORDS] = crossed.y;

@@ -103,10 +103,11 @@ void main()
         for (uint half_of = 0u; half_of < 2u; half_of++) {
             uint word = 2u * z + half_of;
             uvec4 under = lower.rows[half_of], over = upper.rows[half_of];
-            crossings += write_crossed(push.edges, slot, word, under, over, first, cells);
-            uint cut = surface_cells(under, over, below(first, word, cells));
+            uvec3 exist = below_each(first, word, cells), inner = below_each(first, word, cells - 1u);
+            crossings += write_crossed(push.edges, slot, word, under, over, exist);
+            uint cut = surface_cells(under, over, exist.x & exist.y & exist.z);
             vertices += write_loops(slot, word, under, over, cut);
-            ivec3 counts = bitCount(own_quads(under, over, first, word, cells));
+            ivec3 counts = bitCount(own_quads(under, over, exist, inner));
             quads += uint(counts.x + counts.y + counts.z);
         }
         lower = upper;

@@ -68,7 +68,8 @@ void main()
             uint word = 2u * z + half_of;
             uvec4 under = lower.rows[half_of], over = upper.rows[half_of];
             vertex = spread_loops(slot, word, under, over, vertex);
-            uvec3 masks = own_quads(under, over, first, word, cells), inside = uvec3(over.zy, under.w);
+            uvec3 exist = below_each(first, word, cells), inner = below_each(first, word, cells - 1u);
+            uvec3 masks = own_quads(under, over, exist, inner), inside = uvec3(over.zy, under.w);
             for (uint axis = 0u; axis < 3u; axis++)
                 quad = spread_quads(slot, word, axis, masks[axis], inside[axis], quad);
         }

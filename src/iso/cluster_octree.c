@@ -149,14 +149,18 @@ static bool merge_node(octree *tree, worker *own, node here)
 /* --- levels --------------------------------------------------------------------------------------------------------
  */
 
+static int team_for(const octree *tree, uint32_t nodes)
+{
+    return nodes >= WORTH_A_TEAM ? tree->worker_count : 1;
+}
+
 static hewn_result merge_level(octree *tree, hewn_error *error)
 {
     uint32_t failures = 0, begin = 0;
     list_nodes(tree);
     for (int colour = 0; colour < COLOURS; colour++) {
         uint32_t end = tree->colour_ends[colour];
-        int team = end - begin >= WORTH_A_TEAM ? tree->worker_count : 1;
-#pragma omp parallel for schedule(dynamic, 16) reduction(+ : failures) num_threads(team)
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : failures) num_threads(team_for(tree, end - begin))
         for (uint32_t i = begin; i < end; i++)
             failures += !merge_node(tree, &tree->workers[omp_get_thread_num()], tree->nodes[i]);
         begin = end;

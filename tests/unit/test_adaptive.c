@@ -142,9 +142,11 @@ static double deviation(const hewn_triangles *from, const hewn_triangles *to, do
         double longest = 0;
         for (int k = 0; k < 3; k++)
             p[k] = &from->positions[3 * (size_t)from->indices[3 * t + (uint64_t)k]];
-        for (int k = 0; k < 3; k++)
-            longest = fmax(longest, hypot(hypot(p[k][0] - p[(k + 1) % 3][0], p[k][1] - p[(k + 1) % 3][1]),
-                                          p[k][2] - p[(k + 1) % 3][2]));
+        for (int k = 0; k < 3; k++) {
+            const float *q = p[(k + 1) % 3];
+            double step_x = (double)p[k][0] - (double)q[0], step_y = (double)p[k][1] - (double)q[1];
+            longest = fmax(longest, hypot(hypot(step_x, step_y), (double)p[k][2] - (double)q[2]));
+        }
         int parts = (int)fmin(60, ceil(longest / step) + 1);
         for (int i = 0; i <= parts; i++)
             for (int j = 0; i + j <= parts; j++) {
@@ -225,9 +227,9 @@ static void test_shapes(void **state)
         maker *make;
         uint32_t resolution;
         uint64_t most; /* triangles with an error of half a cell */
-    } shapes[] = {{"sphere", make_sphere, 32, 160},        {"box", make_box, 40, 12},
-                  {"turned box", make_turned_box, 40, 12}, {"csg", make_csg, 40, 400},
-                  {"random", make_random, 32, 600},        {"noise", make_noise, 10, 3000}};
+    } shapes[] = {{"sphere", make_sphere, 24, 130},        {"box", make_box, 32, 12},
+                  {"turned box", make_turned_box, 32, 12}, {"csg", make_csg, 32, 300},
+                  {"random", make_random, 24, 450},        {"noise", make_noise, 8, 1500}};
     static const double errors[] = {0, 0.02, 0.5, 2};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         uint32_t resolution = shapes[i].resolution * (getenv("HEWN_LONG") ? 2 : 1);
@@ -318,7 +320,7 @@ static void test_open_surfaces(void **state)
     (void)state;
     maker *makers[] = {make_sphere, make_csg, make_random, make_noise};
     for (uint64_t i = 0; i < (getenv("HEWN_LONG") ? 40 : 8); i++) {
-        hewn_dual_surface surface = make_surface(makers[i % 4], i / 4, i % 4 == 3 ? 9 : 28, true);
+        hewn_dual_surface surface = make_surface(makers[i % 4], i / 4, i % 4 == 3 ? 7 : 22, true);
         for (int k = 0; k < 3; k++) {
             outcome out = collapse(&surface, k * k * 0.3 * (double)surface.grid.cell, false, "open");
             assert_false(out.after.closed);
@@ -333,9 +335,9 @@ static void test_random_surfaces(void **state)
 {
     (void)state;
     uint64_t random = 17;
-    for (uint64_t seed = 0; seed < (getenv("HEWN_LONG") ? 500 : 20); seed++) {
+    for (uint64_t seed = 0; seed < (getenv("HEWN_LONG") ? 500 : 12); seed++) {
         hewn_dual_surface surface =
-            make_surface(seed % 3 == 2 ? make_noise : make_random, seed, seed % 3 == 2 ? 8 : 20, false);
+            make_surface(seed % 3 == 2 ? make_noise : make_random, seed, seed % 3 == 2 ? 7 : 18, false);
         double length = pow(10, random_between(&random, -3, 0.7)) * (double)surface.grid.cell;
         outcome out = collapse(&surface, length, false, "random");
         assert_true(out.mesh.triangle_count <= out.uniform + 4 * out.stats.centres);
@@ -347,7 +349,7 @@ static void test_random_surfaces(void **state)
 static void test_threads(void **state)
 {
     (void)state;
-    hewn_dual_surface surface = make_surface(make_random, 3, 40, false);
+    hewn_dual_surface surface = make_surface(make_random, 3, 28, false);
     outcome first = {0};
     int threads = omp_get_max_threads();
     for (int count = 1; count <= 5; count += 2) {
