@@ -135,7 +135,7 @@ static void test_uv_rules(void **state)
         skip();
     random_state random = {3};
     int compared = 0;
-    for (int i = 0; i < 600; i++) {
+    for (int i = 0; i < 900; i++) {
         hewn_subdivide_desc desc = {.scheme = (hewn_scheme)(i % 3), .levels = 1 + random_below(&random, 3)};
         desc.uv = (hewn_uv_rule)(i / 3 % HEWN_UV_COUNT);
         desc.boundary = (hewn_subdivide_boundary)random_below(&random, 2);
