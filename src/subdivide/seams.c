@@ -14,7 +14,6 @@ typedef struct seams {
     uint32_t count;      /* of values */
     uint32_t *at_vert;   /* how many values a vertex has */
     uint32_t *faces;     /* of each value */
-    uint8_t *twin;       /* of each value: another fan of its vertex has the same */
     uint8_t *has_corner; /* of each vertex: a value of one face only */
 } seams;
 
@@ -64,33 +63,12 @@ static void join_corners(seams *cut)
     }
 }
 
-/* The corner of a vertex left of one of its edges; HEWN_NONE past the end of a fan. */
-static uint32_t corner_left(const sub_level *base, uint32_t edge, uint32_t vert)
-{
-    return base->edge_corners[2 * (size_t)edge + (base->edge_verts[2 * (size_t)edge] != vert)];
-}
-
-/* Where two fans around a vertex have one value, faces of others between them, both are sharp. */
-static void find_twins(seams *cut, uint32_t vert)
-{
-    const sub_level *base = cut->base;
-    for (uint32_t i = base->vert_first[vert]; i < base->vert_first[vert + 1]; i++)
-        for (uint32_t j = base->vert_first[vert]; j < i; j++) {
-            uint32_t a = corner_left(base, base->vert_edges[i], vert), b = corner_left(base, base->vert_edges[j], vert);
-            if (a == HEWN_NONE || b == HEWN_NONE || cut->number[a] == cut->number[b] || !same(cut, a, b))
-                continue;
-            cut->twin[cut->number[a]] = cut->twin[cut->number[b]] = 1;
-        }
-}
-
 /* Where linear interpolation is asked for. */
 static bool is_linear(const seams *cut, const sub_level *level, uint32_t value, hewn_uv_rule rule)
 {
     uint32_t vert = cut->base->corner_verts[cut->sources[value]], edge = level->vert_edges[level->vert_first[value]];
     bool open = sub_is_boundary(level, edge), plus2 = rule == HEWN_UV_CORNERS_PLUS2;
     bool closed = !sub_is_boundary(cut->base, cut->base->vert_edges[cut->base->vert_first[vert]]);
-    if (cut->twin[value])
-        return true;
     if (!open || rule == HEWN_UV_NONE)
         return false;
     if (rule == HEWN_UV_BOUNDARIES || cut->faces[value] == 1)
@@ -109,9 +87,6 @@ static hewn_result tag(seams *cut, sub_level *level, hewn_uv_rule rule, hewn_err
         HEWN_TRY(hewn_sub_level_sharpen(level, error));
     if (!level->edge_sharp)
         return HEWN_OK;
-    for (uint32_t v = 0; v < base->verts; v++)
-        if (cut->at_vert[v] > 1)
-            find_twins(cut, v);
     for (uint32_t value = 0; value < cut->count; value++)
         if (cut->faces[value] == 1)
             cut->has_corner[base->corner_verts[cut->sources[value]]] = 1;
@@ -168,10 +143,9 @@ hewn_result hewn_sub_seams(const hewn_subdivision *base, const void *values, siz
     cut.sources = hewn_alloc(level->corners, sizeof *cut.sources);
     cut.at_vert = hewn_alloc_zero(level->verts, sizeof *cut.at_vert);
     cut.faces = hewn_alloc_zero(level->corners, sizeof *cut.faces);
-    cut.twin = hewn_alloc_zero(level->corners, 1);
     cut.has_corner = hewn_alloc_zero(level->verts, 1);
     hewn_result result = HEWN_OK;
-    if (!*out || !cut.root || !cut.number || !cut.sources || !cut.at_vert || !cut.faces || !cut.twin || !cut.has_corner)
+    if (!*out || !cut.root || !cut.number || !cut.sources || !cut.at_vert || !cut.faces || !cut.has_corner)
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for values of corners");
     if (result == HEWN_OK)
         result = build(&cut, base, rule, *out, error);
@@ -179,7 +153,6 @@ hewn_result hewn_sub_seams(const hewn_subdivision *base, const void *values, siz
     hewn_free(cut.number);
     hewn_free(cut.at_vert);
     hewn_free(cut.faces);
-    hewn_free(cut.twin);
     hewn_free(cut.has_corner);
     if (result == HEWN_OK) {
         *sources = cut.sources;

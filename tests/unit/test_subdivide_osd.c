@@ -114,6 +114,19 @@ static void test_limits_at_lasting_creases(void **state)
     }
 }
 
+/* Whether two fans around a vertex have one value: to Hewn these are two, what OpenSubdiv does is its own affair. */
+static bool has_twins(const hewn_subdivision *sub, const hewn_subdivision *seams, const uint32_t *sources,
+                      const double *uv)
+{
+    const sub_level *base = &sub->levels[0];
+    for (uint32_t a = 0; a < seams->levels[0].verts; a++)
+        for (uint32_t b = 0; b < a; b++)
+            if (base->corner_verts[sources[a]] == base->corner_verts[sources[b]] &&
+                memcmp(uv + 2 * sources[a], uv + 2 * sources[b], 2 * sizeof *uv) == 0)
+                return true;
+    return false;
+}
+
 /* Values of corners: some seams, some vertices cut, all six rules. */
 static void test_uv_rules(void **state)
 {
@@ -121,7 +134,8 @@ static void test_uv_rules(void **state)
     if (!osd_is_there())
         skip();
     random_state random = {3};
-    for (int i = 0; i < 300; i++) {
+    int compared = 0;
+    for (int i = 0; i < 900; i++) {
         hewn_subdivide_desc desc = {.scheme = (hewn_scheme)(i % 3), .levels = 1 + random_below(&random, 3)};
         desc.uv = (hewn_uv_rule)(i / 3 % HEWN_UV_COUNT);
         desc.boundary = (hewn_subdivide_boundary)random_below(&random, 2);
@@ -151,7 +165,9 @@ static void test_uv_rules(void **state)
         assert_int_equal(hewn_subdivision_refine(seams, control, 2, own, NULL), HEWN_OK);
         osd_request request = {&polygons, &desc, sub, model.positions, uv};
         assert_true(osd_refine(&request, points, NULL, NULL, theirs));
-        for (uint32_t c = 0; c < last->corners; c++)
+        bool clear = !has_twins(sub, seams, sources, uv);
+        compared += clear;
+        for (uint32_t c = 0; clear && c < last->corners; c++)
             for (uint32_t k = 0; k < 2; k++) {
                 double is = own[2 * last->corner_verts[c] + k], wanted = theirs[2 * c + k];
                 if (!(fabs(is - wanted) < 1e-5))
@@ -168,6 +184,8 @@ static void test_uv_rules(void **state)
         hewn_subdivision_destroy(&seams);
         hewn_model_destroy(&model);
     }
+    print_message("# %d meshes compared\n", compared);
+    assert_true(compared > 100);
 }
 
 int main(void)
