@@ -202,14 +202,14 @@ static void test_bracket(void **state)
     double off = deviation(&adaptive, stats.cell);
     hewn_triangles uniform = extract(HEWN_METHOD_DC, RESOLUTION, 0, &stats);
     double share = (double)uniform.triangle_count / (double)adaptive.triangle_count;
-    print_message("%u cells: %llu triangles, %g off; adaptive %g: %llu triangles, %g off\n", (unsigned)RESOLUTION,
+    print_message("# %u cells: %llu triangles, %g off; adaptive %g: %llu triangles, %g off\n", (unsigned)RESOLUTION,
                   (unsigned long long)uniform.triangle_count, deviation(&uniform, stats.cell), error,
                   (unsigned long long)adaptive.triangle_count, off);
     hewn_triangles_destroy(&uniform);
     assert_true(share > 10);
     hewn_triangles coarse = extract(HEWN_METHOD_DC, (uint32_t)(RESOLUTION * sqrt(10 / share)), 0, &stats);
     double coarse_off = deviation(&coarse, stats.cell);
-    print_message("%llu uniform triangles: %g off\n", (unsigned long long)coarse.triangle_count, coarse_off);
+    print_message("# %llu uniform triangles: %g off\n", (unsigned long long)coarse.triangle_count, coarse_off);
     assert_true(coarse_off > off);
     hewn_triangles_destroy(&coarse);
     hewn_triangles_destroy(&adaptive);
@@ -226,8 +226,8 @@ static void test_error_is_kept(void **state)
     for (double error = 0.1; error < 1; error *= 4) {
         hewn_triangles mesh = extract(HEWN_METHOD_DC, RESOLUTION, error, &stats);
         double now = deviation(&mesh, stats.cell);
-        print_message("error %g: %llu triangles, %g off; uniform %g\n", error, (unsigned long long)mesh.triangle_count,
-                      now, off);
+        print_message("# error %g: %llu triangles, %g off; uniform %g\n", error,
+                      (unsigned long long)mesh.triangle_count, now, off);
         assert_true(now <= 1.25 * error + off);
         check_mesh(&mesh);
         hewn_triangles_destroy(&mesh);
