@@ -34,11 +34,12 @@ void main()
     uint columns = counting(0u, first.x), rows = counting(1u, first.y) >> row;
     bool layer_counts = (counting(2u, first.z) >> layer & 1u) != 0u;
     float z = sample_coordinate(push.grid, 2u, first.z + layer);
-    uint bits = 0u;
+    vec4 y;
+    uint counts = 0u;
     for (uint i = 0u; i < 4u; i++) {
-        float y = sample_coordinate(push.grid, 1u, first.y + row + i);
-        uint inside = field_row_inside(first.x, y, z) & columns;
-        bits |= layer_counts && (rows >> i & 1u) != 0u ? inside << 8u * i : 0u;
+        y[i] = sample_coordinate(push.grid, 1u, first.y + row + i);
+        counts |= layer_counts && (rows >> i & 1u) != 0u ? columns << 8u * i : 0u;
     }
-    push.signs.at[at] = bits;
+    field_select(at / HEWN_BRICK_WORDS);
+    push.signs.at[at] = field_word_inside(first.x, y, z) & counts;
 }

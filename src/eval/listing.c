@@ -86,8 +86,7 @@ static void put_parameters(hewn_listing *listing, hewn_code_step *step, const he
     }
 }
 
-/* Whether the operand is handed over as a bare number: a finite constant, to operations that have a form for it. */
-static bool is_plain(const hewn_listing *listing, const hewn_code_step *step, uint32_t i)
+bool hewn_listing_is_plain(const hewn_listing *listing, const hewn_code_step *step, uint32_t i)
 {
     const hewn_code_step *in = &listing->steps[step->in[i]];
     hewn_op op = step->op;
@@ -197,7 +196,7 @@ static bool guards_itself(hewn_op op)
            op == HEWN_OP_DIV || op == HEWN_OP_MOD;
 }
 
-static bool needs_guard(const hewn_listing *listing, const hewn_code_step *step)
+bool hewn_listing_needs_guard(const hewn_listing *listing, const hewn_code_step *step)
 {
     for (uint32_t i = 0; i < step->in_count; i++)
         if (!listing->steps[step->in[i]].sure)
@@ -211,7 +210,7 @@ static void write_operands(const hewn_listing *listing, const hewn_code_step *st
     for (uint32_t i = 0; i < step->in_count; i++) {
         if (i > 0)
             hewn_text_append_bytes(text, ",", 1);
-        write_operand(listing, step->in[i], flavour, !always_whole && is_plain(listing, step, i), text);
+        write_operand(listing, step->in[i], flavour, !always_whole && hewn_listing_is_plain(listing, step, i), text);
     }
 }
 
@@ -220,7 +219,7 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     const hewn_code_step *step = &listing->steps[at];
     if (!step->function)
         return;
-    bool guard = flavour == INTERVAL && needs_guard(listing, step);
+    bool guard = flavour == INTERVAL && hewn_listing_needs_guard(listing, step);
     hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", step->function);
     write_operands(listing, step, flavour, false, text);
     for (uint32_t i = 0; i < step->parameter_count; i++) {
@@ -294,6 +293,11 @@ void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_tex
                        "vec4 field_gradient(float at_x, float at_y, float at_z)\n{\n"
                        "vec4 x=vec4(1.0,0.0,0.0,at_x),y=vec4(0.0,1.0,0.0,at_y),z=vec4(0.0,0.0,1.0,at_z);\n",
                        text);
-    if (flavours & HEWN_FLAVOUR_ROW)
+    if (flavours & (HEWN_FLAVOUR_ROW | HEWN_FLAVOUR_WORD))
         write_row(listing, text);
+    if (flavours & HEWN_FLAVOUR_WORD)
+        hewn_text_append(text, "uint field_word_inside(uint i, vec4 y, float z)\n{\nuint bits = 0u;\n"
+                               "for (uint k = 0u; k < 4u; k++)\n"
+                               "bits |= field_row_inside(i, k == 0u ? y.x : k == 1u ? y.y : k == 2u ? y.z : y.w, z) << "
+                               "8u * k;\nreturn bits;\n}\n");
 }

@@ -4,7 +4,7 @@
 
 #include "hewn/extract.h"
 
-#include "eval/code.h"
+#include "eval/lists.h"
 #include "gpu/gpu.h"
 #include "iso/grid.h"
 
@@ -20,6 +20,7 @@ struct hewn_extractor {
     hewn_scan *scan;
     hewn_buffer table;                                            /* hewn_mc_table */
     hewn_program *cull, *signs, *vertices;                        /* made of the field */
+    hewn_program *choose, *keep_lists, *gather;                   /* instead of `cull` where it is in lists */
     hewn_program *compact, *link, *classify, *spread, *triangles; /* the same for all */
     hewn_mc33_programs mc33;
 };
@@ -28,8 +29,12 @@ struct hewn_extractor {
 hewn_result hewn_extractor_create_with(hewn_device *device, const hewn_field *field, hewn_node root,
                                        hewn_numbers numbers, hewn_extractor **out, hewn_error *error);
 
+/* As hewn_extractor_create(), with a say in how the field is evaluated. */
+hewn_result hewn_extractor_create_as(hewn_device *device, const hewn_field *field, hewn_node root,
+                                     const hewn_code_desc *desc, hewn_extractor **out, hewn_error *error);
+
 /* Buffers that one run needs, all freed together. */
-#define HEWN_WORKSPACE_MOST 48
+#define HEWN_WORKSPACE_MOST 96
 typedef struct hewn_workspace {
     hewn_device *device;
     hewn_buffer buffers[HEWN_WORKSPACE_MOST];
@@ -53,6 +58,13 @@ typedef struct hewn_bricks {
 /* Finds the bricks that may hold surface. */
 hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_grid *grid, hewn_workspace *workspace,
                              hewn_bricks *out, hewn_error *error);
+
+/* The same for a field in lists, of which `extractor->code` then has those of the bricks. */
+hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                   hewn_workspace *workspace, hewn_bricks *out, hewn_error *error);
+
+/* Levels of culling, blocks of the coarsest, and the cells along their sides. */
+uint32_t hewn_grid_levels(const struct hewn_grid *grid, uint32_t *levels, uint32_t top[3]);
 
 /* The surface in those bricks, as counts and ranks on the device. */
 typedef struct hewn_surface {

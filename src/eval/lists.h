@@ -1,0 +1,46 @@
+/* Listed code: the field as lists of instructions that kernels walk over, one list for the whole field and a shorter
+ * one for each box that somebody prunes for.
+ *
+ * A kernel calls field_select(slot) to evaluate the list of a box that hewn_code_use_lists() named; before that it is
+ * the whole field's. Straight code has a field_select() that does nothing, so kernels need not know which it is.
+ *
+ * Pruning drops an operand of a min, max or blend where bounds show that the arithmetic returns the other operand's
+ * bits, so every list gives the same bits in its box as the whole field. With HEWN_FLAVOUR_CHOICES a kernel has
+ *   vec2 field_choose(vec2 x, vec2 y, vec2 z, hewn_words choices, uint first)
+ *       field_interval(), which also writes two bits an instruction, from word `first` on
+ *   uint field_keep(hewn_words choices, uint first, bool write, hewn_words to, uint end)
+ *       how many instructions those choices leave; with `write` they are copied to where the list `to` has instructions
+ *       up to `end` */
+#ifndef HEWN_SRC_EVAL_LISTS_H
+#define HEWN_SRC_EVAL_LISTS_H
+
+#include "eval/code.h"
+
+/* How a field is evaluated. */
+typedef enum hewn_evaluation {
+    HEWN_EVALUATION_AUTO,     /* listed where the field is large enough for pruning to pay, and can be */
+    HEWN_EVALUATION_STRAIGHT, /* code for each operation */
+    HEWN_EVALUATION_LISTED    /* lists, where there can be */
+} hewn_evaluation;
+
+typedef struct hewn_code_desc {
+    hewn_numbers numbers; /* of straight code */
+    hewn_evaluation evaluation;
+} hewn_code_desc;
+
+hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, hewn_node root,
+                                const hewn_code_desc *desc, hewn_code **out, hewn_error *error);
+
+bool hewn_code_is_listed(const hewn_code *code);
+
+/* Instructions of the whole field, and bytes of one. */
+uint32_t hewn_code_instruction_count(const hewn_code *code);
+uint32_t hewn_code_instruction_bytes(const hewn_code *code);
+
+/* Two bits a choice. */
+#define HEWN_CHOICES_A_WORD 16u
+
+/* From the next submit on, slots are those of `ranges` (two words each: first instruction and count) in `lists`. */
+void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_buffer *ranges);
+
+#endif
