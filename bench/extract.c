@@ -1,5 +1,6 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process. usage: extract [--runs N] [--res N] [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger. */
+ * process. usage: extract [--runs N] [--res N] [--peers 0] [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger, random,
+ * random100, random10000. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 
 #include "dense.h"
 #include "flying_edges.h"
+#include "heap.h"
 #include "hewn/hewn.h"
 #include "samples.h"
 
@@ -20,15 +22,21 @@ typedef struct contest {
     const char *file;
     const hewn_scene_setting *settings;
     size_t setting_count;
-    const dense_field *dense;
+    const dense_field *dense; /* NULL: a heap of shapes */
+    uint32_t resolution;      /* where none is asked for */
+    bool alone;               /* peers would take minutes */
 } contest;
 
 static const hewn_scene_setting level_four[] = {{"L", 4}};
+static const hewn_scene_setting hundred[] = {{"n", 100}}, thousand[] = {{"n", 1000}}, myriad[] = {{"n", 10000}};
 
 static const contest contests[] = {
-    {"csg", "csg.lua", NULL, 0, &dense_csg},
-    {"gyroid", "gyroid.lua", NULL, 0, &dense_gyroid},
-    {"menger", "menger.lua", level_four, 1, &dense_menger4},
+    {"csg", "csg.lua", NULL, 0, &dense_csg, 512, false},
+    {"gyroid", "gyroid.lua", NULL, 0, &dense_gyroid, 512, false},
+    {"menger", "menger.lua", level_four, 1, &dense_menger4, 512, false},
+    {"random", "random.lua", thousand, 1, NULL, 256, false},
+    {"random100", "random.lua", hundred, 1, NULL, 256, false},
+    {"random10000", "random.lua", myriad, 1, NULL, 256, true},
 };
 
 typedef struct outcome {
@@ -61,20 +69,31 @@ static void run_hewn(hewn_extractor *extractor, const hewn_box *bounds, uint32_t
     hewn_triangles_destroy(&triangles);
 }
 
-static void run_peers(const dense_field *field, uint32_t resolution, float *values, double *sampling, double *meshing,
+/* What the peers mesh: one of two ways to fill a cube with values. */
+typedef struct peer {
+    const dense_field *field;
+    const dense_shape *heap;
+    size_t heap_count;
+    float lo, hi;
+} peer;
+
+static void run_peers(const peer *subject, uint32_t resolution, float *values, double *sampling, double *meshing,
                       outcome *out)
 {
     size_t samples = (size_t)resolution + 1;
     double begin = hewn_clock_now();
-    dense_sample(field, samples, values);
+    if (subject->field)
+        dense_sample(subject->field, samples, values);
+    else
+        dense_sample_heap(subject->heap, subject->heap_count, subject->lo, subject->hi, samples, values);
     *sampling = hewn_clock_now() - begin;
     uint64_t vertices;
-    double step = (double)(field->hi - field->lo) / resolution;
-    *meshing = flying_edges_run(values, samples, (double)field->lo, step, THREADS, &vertices, &out->peer_triangles);
+    double step = (double)(subject->hi - subject->lo) / resolution;
+    *meshing = flying_edges_run(values, samples, (double)subject->lo, step, THREADS, &vertices, &out->peer_triangles);
 }
 
 static void run_contest(hewn_device *device, const contest *entry, const char *folder, uint32_t resolution, int runs,
-                        outcome *out)
+                        bool with_peers, outcome *out)
 {
     char path[4096];
     hewn_error error = {0};
@@ -94,13 +113,24 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
     float *values = malloc(samples * samples * samples * sizeof *values);
     if (!values)
         exit(1);
+    peer subject = {.field = entry->dense, .lo = (float)bounds.lo[0], .hi = (float)bounds.hi[0]};
+    if (entry->dense) {
+        subject.lo = entry->dense->lo;
+        subject.hi = entry->dense->hi;
+    } else {
+        subject.heap = heap_read(hewn_scene_field(scene), &subject.heap_count);
+    }
+    bool peers = with_peers && !entry->alone && (subject.field || subject.heap);
     double unused[2];
     run_hewn(extractor, &bounds, resolution, unused, out);
-    run_peers(entry->dense, resolution, values, unused, unused + 1, out);
+    if (peers && entry->dense)
+        run_peers(&subject, resolution, values, unused, unused + 1, out);
     for (int i = 0; i < runs; i++) {
         run_hewn(extractor, &bounds, resolution, &out->hewn[i], out);
-        run_peers(entry->dense, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
+        if (peers)
+            run_peers(&subject, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
     }
+    free((void *)subject.heap);
     free(values);
     hewn_extractor_destroy(&extractor);
     hewn_scene_destroy(&scene);
@@ -119,7 +149,7 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
 {
     double ours = bench_median(result->hewn, runs), sampling = bench_median(result->sampling, runs);
     double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
-    printf("%-8s %5u  %8.3f  %8.3f + %-7.3f  %5.2fx   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, read back "
+    printf("%-12s %5u  %8.3f  %8.3f + %-7.3f  %5.2fx   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, read back "
            "%.3f\n",
            entry->name, resolution, ours, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles,
            (unsigned long long)result->peer_triangles, result->stage[0], result->stage[1], result->stage[2],
@@ -145,13 +175,16 @@ int main(int argc, char **argv)
 {
     const char *folder = getenv("HEWN_SCENES");
     int runs = 5, at = 1;
-    uint32_t resolution = 512;
+    uint32_t wanted_resolution = 0;
+    bool with_peers = true;
     FILE *json = NULL;
     for (; at + 1 < argc && strncmp(argv[at], "--", 2) == 0; at += 2) {
         if (strcmp(argv[at], "--runs") == 0)
             runs = atoi(argv[at + 1]);
         else if (strcmp(argv[at], "--res") == 0)
-            resolution = (uint32_t)atoi(argv[at + 1]);
+            wanted_resolution = (uint32_t)atoi(argv[at + 1]);
+        else if (strcmp(argv[at], "--peers") == 0)
+            with_peers = atoi(argv[at + 1]) != 0;
         else if (strcmp(argv[at], "--json") == 0)
             json = fopen(argv[at + 1], "w");
     }
@@ -162,7 +195,7 @@ int main(int argc, char **argv)
     printf(
         "device %s; dense sampling in C and VTK flying edges (%s) on %d threads; medians of %d runs in turn, seconds\n",
         hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
-    printf("%-8s %5s  %8s  %18s  %6s   %9s %9s\n", "scene", "cells", "Hewn", "sampling + VTK", "ratio", "triangles",
+    printf("%-12s %5s  %8s  %18s  %6s   %9s %9s\n", "scene", "cells", "Hewn", "sampling + VTK", "ratio", "triangles",
            "VTK's");
     if (json)
         fprintf(json, "[");
@@ -171,7 +204,8 @@ int main(int argc, char **argv)
         if (!wanted(&contests[i], argc, argv, at))
             continue;
         outcome result = {0};
-        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, &result);
+        uint32_t resolution = wanted_resolution ? wanted_resolution : contests[i].resolution;
+        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, with_peers, &result);
         print_outcome(json, &contests[i], resolution, &result, runs, first);
         first = false;
         fflush(stdout);

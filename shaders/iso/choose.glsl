@@ -15,14 +15,14 @@ uint block_state(uvec3 block, uint first_choice)
 {
     uvec3 cells = uvec3(push.grid.cells[0], push.grid.cells[1], push.grid.cells[2]);
     uvec3 first = block * push.size;
-    if (any(greaterThanEqual(first, cells + push.grid.open)))
-        return HEWN_ALL_OUTSIDE;
+    bool beyond = any(greaterThanEqual(first, cells + push.grid.open));
+    first = min(first, cells);
     uvec3 last = min(first + push.size, cells);
     vec2 sides[3];
     for (uint axis = 0u; axis < 3u; axis++)
         sides[axis] = vec2(sample_coordinate(push.grid, axis, first[axis]), sample_coordinate(push.grid, axis, last[axis]));
     vec2 range = field_choose(sides[0], sides[1], sides[2], hewn_words(push.choices), first_choice);
-    if (range.x >= 0.0)
+    if (beyond || range.x >= 0.0)
         return HEWN_ALL_OUTSIDE;
     bool at_bounds = any(equal(first, uvec3(0u))) || any(equal(last, cells));
     if (range.y < 0.0 && (push.grid.open != 0u || !at_bounds))
@@ -32,12 +32,13 @@ uint block_state(uvec3 block, uint first_choice)
 
 void main()
 {
-    uint at = invocation();
-    if (at >= push.tested)
-        return;
+    /* Nobody leaves: a subgroup reads the list that it shares together. */
+    uint own = invocation(), at = min(own, push.tested - 1u);
     uvec3 dense = uvec3(push.dense[0], push.dense[1], push.dense[2]);
     uint first_choice = select_parent(at, dense.x != 0u, push.parent_ranges);
     uint state = block_state(block_at(at, dense, push.parents), first_choice);
+    if (own != at)
+        return;
     push.states.at[at] = state;
     push.flags.at[at] = state == 0u ? 1u : 0u;
     uint kept = 0u;

@@ -25,9 +25,8 @@ uint counting(uint axis, uint first)
 
 void main()
 {
-    uint at = invocation();
-    if (at >= push.count * HEWN_BRICK_WORDS)
-        return;
+    /* Nobody leaves before the field is evaluated: subgroups may do that together. */
+    uint own = invocation(), at = min(own, push.count * HEWN_BRICK_WORDS - 1u);
     uvec3 first = 8u * unpack_brick(push.bricks.at[at / HEWN_BRICK_WORDS]);
     uint word = at % HEWN_BRICK_WORDS;
     uint layer = word >> 1, row = 4u * (word & 1u);
@@ -41,5 +40,7 @@ void main()
         counts |= layer_counts && (rows >> i & 1u) != 0u ? columns << 8u * i : 0u;
     }
     field_select(at / HEWN_BRICK_WORDS);
-    push.signs.at[at] = field_word_inside(first.x, y, z) & counts;
+    uint inside = field_word_inside(first.x, y, z) & counts;
+    if (own == at)
+        push.signs.at[at] = inside;
 }

@@ -42,4 +42,17 @@ struct hewn_keep_push {
     HEWN_UINTS ranges; /* out, a kept block: first instruction and count */
 };
 
+/* Solves vertices, four an invocation, sixteen invocations a brick. */
+struct hewn_listed_vertex_push {
+    HEWN_GRID grid;
+    HEWN_UINT count; /* bricks */
+    HEWN_UINT vertex_count;
+    HEWN_UINT pad;
+    HEWN_UINTS bricks;
+    HEWN_UINTS vertex_bases;
+    HEWN_FLOATS positions; /* in: records; out: positions */
+    HEWN_FLOATS normals;   /* out */
+    HEWN_UINTS summary;    /* HEWN_SUMMARY_WORDS */
+};
+
 #endif

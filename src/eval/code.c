@@ -1,6 +1,8 @@
 #include "eval/code.h"
 
 #include <string.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -58,11 +60,22 @@ static size_t instruction_bytes(const hewn_instructions *instructions)
     return (size_t)instructions->count * instructions->set.words * sizeof(uint32_t);
 }
 
+/* Invocations that read an instruction together: as many as a subgroup of a CPU device has. GPUs have subgroups that
+ * may not be full, and read what all want once anyway. */
+static uint32_t invocations_together(const hewn_device *device)
+{
+    uint32_t size = device->subgroup_size;
+    bool divides = size == 4 || size == 8 || size == HEWN_TOGETHER_MOST;
+    return device->info.kind == HEWN_DEVICE_CPU && divides ? size : 0;
+}
+
 static hewn_result write_instructions(hewn_device *device, hewn_code *code, hewn_error *error)
 {
     const hewn_instructions *list = &code->instructions;
     size_t bytes = instruction_bytes(list);
-    HEWN_TRY(create_filled(device, bytes, list->words, bytes, &code->parameters, error));
+    code->walking = (hewn_walking){.masked = device->info.kind == HEWN_DEVICE_CPU,
+                                   .together = invocations_together(device)};
+    HEWN_TRY(create_filled(device, bytes + HEWN_LIST_SLACK, list->words, bytes, &code->parameters, error));
     const hewn_list_block block = {.whole = code->parameters.address, .whole_count = list->count};
     return create_filled(device, sizeof block, &block, sizeof block, &code->uniforms, error);
 }
@@ -155,6 +168,7 @@ static hewn_result choose_evaluation(hewn_code *code, hewn_evaluation evaluation
     if (evaluation == HEWN_EVALUATION_STRAIGHT)
         return HEWN_OK;
     HEWN_TRY(hewn_instructions_create(&code->instructions, &code->listing, NULL, &code->listed, error));
+    if (code->listed && getenv("PROF")) { const hewn_instruction_set *q = &code->instructions.set; fprintf(stderr, "instructions %u bodies %u combos %u words %u slots %u\n", code->instructions.count, q->body_count, q->combination_count, q->words, q->slots); if (getenv("BODIES")) for (uint32_t i = 0; i < q->body_count; i++) fprintf(stderr, "%u: %s\n", i, q->bodies[i].texts[0].bytes); }
     if (code->listed && evaluation == HEWN_EVALUATION_AUTO && code->instructions.prunable < LISTED_FROM) {
         hewn_instructions_destroy(&code->instructions);
         code->listed = false;
@@ -235,7 +249,7 @@ static hewn_result renumber_list(hewn_code *code, hewn_listing *listing, bool *t
 {
     hewn_instructions made;
     hewn_result result = hewn_instructions_create(&made, listing, &code->instructions.set, taken, error);
-    if (*taken && instruction_bytes(&made) > code->parameters.size) {
+    if (*taken && instruction_bytes(&made) + HEWN_LIST_SLACK > code->parameters.size) {
         hewn_instructions_destroy(&made);
         *taken = false;
     }
@@ -309,6 +323,8 @@ void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_b
 
 static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, hewn_text *text)
 {
+    hewn_walking how = code->walking;
+    how.together = desc->flavours & HEWN_FLAVOUR_TOGETHER ? how.together : 0;
     /* An extension may only be asked for before anything is declared, so right after #version. */
     size_t version = strcspn(desc->head, "\n");
     version += desc->head[version] == '\n';
@@ -316,13 +332,16 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
     if (code->listed)
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n"
                                "#extension GL_EXT_buffer_reference_uvec2 : require\n"
-                               "#extension GL_EXT_control_flow_attributes : require\n");
+                               "#extension GL_EXT_control_flow_attributes : require\n"
+                               "#extension GL_KHR_shader_subgroup_basic : enable\n"
+                               "#extension GL_KHR_shader_subgroup_vote : enable\n"
+                               "#extension GL_KHR_shader_subgroup_ballot : enable\n");
     else if (code->place == HEWN_PLACE_ADDRESS)
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n");
     hewn_text_append(text, desc->head + version);
     hewn_text_append(text, "\n");
     if (code->listed) {
-        hewn_instruction_set_declare(&code->instructions.set, text);
+        hewn_instruction_set_declare(&code->instructions.set, &how, text);
     } else {
         write_parameter_block(code, text);
         hewn_text_append(text, "void field_select(uint slot)\n{\n}\n");
@@ -330,7 +349,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
     hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_POINT, text);
     if (desc->flavours & (HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_CHOICES))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_INTERVAL, text);
-    if (desc->flavours & HEWN_FLAVOUR_GRADIENT)
+    if (desc->flavours & (HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_FOUR))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_GRADIENT, text);
     if (!code->listed) {
         hewn_listing_write(&code->listing, desc->flavours, text);
@@ -339,7 +358,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
     }
     if (desc->flavours & HEWN_FLAVOUR_CHOICES)
         hewn_text_append(text, hewn_text_keep);
-    hewn_instruction_set_write(&code->instructions.set, desc->flavours, text);
+    hewn_instruction_set_write(&code->instructions.set, &how, desc->flavours, text);
     hewn_text_append(text, desc->body);
 }
 

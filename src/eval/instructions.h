@@ -15,7 +15,7 @@ enum {
     HEWN_NO_SLOT = 15,
     HEWN_BODY_STEPS = 16,   /* of one body */
     HEWN_BODY_INPUTS = 3,   /* slots that a body reads */
-    HEWN_BODY_NUMBERS = 14, /* of one body */
+    HEWN_BODY_NUMBERS = 16, /* of one body */
     HEWN_INSTRUCTIONS_MAX = 30000 /* an invocation walks over all of them twice; CPU drivers bound its iterations */
 };
 
@@ -59,9 +59,17 @@ hewn_result hewn_instructions_create(hewn_instructions *out, const hewn_listing 
                                      const hewn_instruction_set *known, bool *fits, hewn_error *error);
 void hewn_instructions_destroy(hewn_instructions *instructions);
 
-/* Appends the functions that `flavours` asks for; the library must precede, and the declarations (below) that. */
+/* How a device is best served. */
+typedef struct hewn_walking {
+    bool masked;       /* it runs every arm of a condition anyway */
+    uint32_t together; /* invocations that read an instruction together, 0: each reads all of it */
+} hewn_walking;
+
 /* Where the instructions are, and field_select(). */
-void hewn_instruction_set_declare(const hewn_instruction_set *set, hewn_text *text);
-void hewn_instruction_set_write(const hewn_instruction_set *set, uint32_t flavours, hewn_text *text);
+void hewn_instruction_set_declare(const hewn_instruction_set *set, const hewn_walking *how, hewn_text *text);
+
+/* Appends the functions that `flavours` asks for; the library must precede, and the declarations that. */
+void hewn_instruction_set_write(const hewn_instruction_set *set, const hewn_walking *how, uint32_t flavours,
+                                hewn_text *text);
 
 #endif

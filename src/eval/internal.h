@@ -28,6 +28,7 @@ typedef struct hewn_list_block {
 struct hewn_code {
     hewn_listing listing;
     bool listed;
+    hewn_walking walking;
     hewn_instructions instructions; /* of listed code; `parameters` holds their words */
     hewn_number_place place;
     hewn_library library;

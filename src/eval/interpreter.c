@@ -1,109 +1,157 @@
 /* GLSL that walks over a list of instructions, with code for the kinds of one set only. CPU drivers run every arm of
  * every condition under a mask, so an instruction costs the sum of all kinds there: few kinds, and many samples that
  * share one walk. */
+#include <stdio.h>
+#include <string.h>
+
 #include "eval/instructions.h"
 
 typedef struct walk {
     const hewn_instruction_set *set;
+    const hewn_walking *how;
     const char *type; /* of values */
     const char *bools;
-    int flavour; /* 0 point, 1 interval, 2 gradient */
-    bool rows;   /* 32 values at once */
+    int flavour;       /* 0 point, 1 interval, 2 gradient */
+    unsigned values;   /* at once: 1, 4 points, or 32 in four rows of eight */
     bool chooses;
     hewn_text *text;
 } walk;
 
-static const walk point_walk = {.type = "float", .bools = "bool", .flavour = 0};
-static const walk word_walk = {.type = "float", .bools = "bool", .flavour = 0, .rows = true};
-static const walk interval_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1};
-static const walk choice_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .chooses = true};
-static const walk gradient_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2};
+static const walk point_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 1};
+static const walk four_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 4};
+static const walk word_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 32};
+static const walk interval_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .values = 1};
+static const walk choice_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .values = 1, .chooses = true};
+static const walk gradient_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2, .values = 1};
+static const walk gradients_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2, .values = 4};
 
-/* --- bodies ------------------------------------------------------------------------------------------------------ */
-
-static void write_bodies(const walk *own)
-{
-    for (uint32_t i = 0; i < own->set->body_count; i++) {
-        const hewn_body *body = &own->set->bodies[i];
-        const char *t = own->type;
-        hewn_text_print(own->text, "%s body_%u(%s x,%s y,%s z,%s b,%s c,%s d", t, i, t, t, t, t, t, t);
-        for (uint32_t k = 0; k < body->numbers; k++)
-            hewn_text_print(own->text, ",const float q%u", k);
-        hewn_text_print(own->text, ")\n{\n%s}\n", body->texts[own->flavour].bytes);
-    }
-}
-
-/* --- the walk ---------------------------------------------------------------------------------------------------- */
-
-static const char *each(const walk *own)
-{
-    return own->rows ? "[[unroll]] for (int k = 0; k < 32; k++) " : "";
-}
-
-static const char *place(const walk *own)
-{
-    return own->rows ? "[k]" : "";
-}
-
-static const char *array(const walk *own)
-{
-    return own->rows ? "[32]" : "";
-}
+/* --- fetching ---------------------------------------------------------------------------------------------------- */
 
 static const char *zero(const walk *own)
 {
     return own->flavour == 0 ? "0.0" : own->flavour == 1 ? "vec2(0.0)" : "vec4(0.0)";
 }
 
+static void write_word(const walk *own, uint32_t i)
+{
+    uint32_t n = own->how->together;
+    if (n)
+        hewn_text_print(own->text, "subgroupBroadcast(w%u,%uu)", i / n, i % n);
+    else
+        hewn_text_print(own->text, "code.at[at+%uu]", i);
+}
+
+static void write_number(const walk *own, const char *name, uint32_t i)
+{
+    hewn_text_print(own->text, "float %s=uintBitsToFloat(", name);
+    write_word(own, i);
+    hewn_text_append(own->text, ");\n");
+}
+
 static void write_fetch(const walk *own)
 {
-    uint32_t at = 1;
-    hewn_text_append(own->text, "uint head=code.at[at],body=head&255u,how=head>>8&15u,to=head>>12&15u;\n");
+    uint32_t at = 1, n = own->how->together;
+    for (uint32_t i = 0; n && i * n < own->set->words; i++)
+        hewn_text_print(own->text, "uint w%u=code.at[at+%uu+gl_SubgroupInvocationID];\n", i, i * n);
+    hewn_text_append(own->text, "uint head=");
+    write_word(own, 0);
+    hewn_text_append(own->text, ",body=head&255u,how=head>>8&15u,to=head>>12&15u;\n");
     if (own->set->blends) {
-        hewn_text_append(own->text, "float blend_size=uintBitsToFloat(code.at[at+1u]),"
-                                    "inverse=uintBitsToFloat(code.at[at+2u]);\n");
+        write_number(own, "blend_size", 1);
+        write_number(own, "inverse", 2);
         at = 3;
     }
-    for (uint32_t i = 0; at + i < own->set->words; i++)
-        hewn_text_print(own->text, "float q%u=uintBitsToFloat(code.at[at+%uu]);\n", i, at + i);
+    for (uint32_t i = 0; at + i < own->set->words; i++) {
+        char name[8] = {'q', (char)('0' + i / 10), (char)('0' + i % 10)};
+        write_number(own, i < 10 ? (char[3]){'q', (char)('0' + i)} : name, at + i);
+    }
+}
+
+/* --- bodies ------------------------------------------------------------------------------------------------------ */
+
+static const char *place(const walk *own)
+{
+    return own->values > 1 ? "[k]" : "";
 }
 
 /* A value from the slot that four bits of the head name. */
 static void write_read(const walk *own, char name, uint32_t shift)
 {
-    hewn_text_print(own->text, "%s %c%s;\n", own->type, name, array(own));
-    if (own->set->slots > 1)
-        hewn_text_print(own->text, "uint from_%c=head>>%u&15u;\n", name, shift);
-    hewn_text_print(own->text, "%s%c%s=", each(own), name, place(own));
+    hewn_text_print(own->text, "%s %c=", own->type, name);
     for (uint32_t i = own->set->slots; i-- > 1;)
         hewn_text_append(own->text, "mix(");
     hewn_text_print(own->text, "s0%s", place(own));
     for (uint32_t i = 1; i < own->set->slots; i++)
-        hewn_text_print(own->text, ",s%u%s,%s(from_%c==%uu))", i, place(own), own->bools, name, i);
+        hewn_text_print(own->text, ",s%u%s,%s((head>>%u&15u)==%uu))", i, place(own), own->bools, shift, i);
     hewn_text_append(own->text, ";\n");
+}
+
+/* With one slot nothing is ever copied. */
+static uint32_t first_body(const walk *own)
+{
+    return own->set->slots == 1 && own->set->body_count > 1 ? 1 : 0;
+}
+
+/* How much all bodies that are made of statements begin with, in bytes: it is computed once for all. The copy apart,
+ * whose only statement is its return. */
+static size_t common_start(const walk *own)
+{
+    const char *first = own->set->body_count > 1 ? own->set->bodies[1].texts[own->flavour].bytes : "";
+    size_t common = strlen(first);
+    for (uint32_t i = 1; i < own->set->body_count; i++) {
+        const char *text = own->set->bodies[i].texts[own->flavour].bytes;
+        size_t same = 0, lines = 0;
+        for (; same < common && text[same] == first[same]; same++)
+            lines = text[same] == '\n' ? same + 1 : lines;
+        common = same < common || text[same] == 0 ? lines : common;
+    }
+    const char *end = strstr(first, "return ");
+    return end && (size_t)(end - first) < common ? (size_t)(end - first) : common;
+}
+
+/* The statements of a body after those in common, and its result into `r`. */
+static void write_body(const walk *own, uint32_t i, size_t common)
+{
+    const char *text = own->set->bodies[i].texts[own->flavour].bytes + (i ? common : 0);
+    const char *result = strstr(text, "return ");
+    if (!own->how->masked)
+        hewn_text_print(own->text, "if(body==%uu)", i);
+    hewn_text_append(own->text, "{\n");
+    hewn_text_append_bytes(own->text, text, (size_t)(result - text));
+    result += strlen("return ");
+    int length = (int)strcspn(result, ";");
+    if (own->how->masked)
+        hewn_text_print(own->text, "r=mix(r,%.*s,%s(body==%uu));\n}\n", length, result, own->bools, i);
+    else
+        hewn_text_print(own->text, "r=%.*s;\n}\n", length, result);
+}
+
+static void write_coordinates(const walk *own)
+{
+    if (own->values == 32)
+        hewn_text_append(own->text, "float x=xs[k&7],y=ys[k>>3];\n");
+    else if (own->values == 4 && own->flavour == 0)
+        hewn_text_append(own->text, "float x=xs[k],y=ys[k],z=zs[k];\n");
+    else if (own->values == 4)
+        hewn_text_append(own->text, "vec4 x=vec4(1.0,0.0,0.0,xs[k]),y=vec4(0.0,1.0,0.0,ys[k]),"
+                                    "z=vec4(0.0,0.0,1.0,zs[k]);\n");
 }
 
 static void write_arms(const walk *own)
 {
     const hewn_instruction_set *set = own->set;
-    uint32_t inputs = 0, first = set->slots == 1 ? 1 : 0; /* with one slot nothing is ever copied */
+    uint32_t inputs = 0, first = first_body(own);
     for (uint32_t i = first; i < set->body_count; i++)
         inputs = set->bodies[i].inputs > inputs ? set->bodies[i].inputs : inputs;
+    write_coordinates(own);
     for (uint32_t i = 0; i < inputs; i++)
         write_read(own, (char)('b' + (int)i), 20 + 4 * i);
-    hewn_text_print(own->text, "%s r%s;\n%sr%s=%s;\n", own->type, array(own), each(own), place(own), zero(own));
-    for (uint32_t i = first; i < set->body_count; i++) {
-        hewn_text_print(own->text, "if(body==%uu) %sr%s=body_%u(%s,z", i, each(own), place(own), i,
-                        own->rows ? "xs[k&7],y[k>>3]" : "x,y");
-        for (uint32_t k = 0; k < HEWN_BODY_INPUTS; k++)
-            if (k < set->bodies[i].inputs)
-                hewn_text_print(own->text, ",%c%s", 'b' + (int)k, place(own));
-            else
-                hewn_text_print(own->text, ",%s", zero(own));
-        for (uint32_t k = 0; k < set->bodies[i].numbers; k++)
-            hewn_text_print(own->text, ",q%u", k);
-        hewn_text_append(own->text, ");\n");
-    }
+    hewn_text_print(own->text, "%s r=%s;\n", own->type, zero(own));
+    size_t common = common_start(own);
+    if (common)
+        hewn_text_append_bytes(own->text, set->bodies[1].texts[own->flavour].bytes, common);
+    for (uint32_t i = first; i < set->body_count; i++)
+        write_body(own, i, common);
 }
 
 static bool is_blend(hewn_op op)
@@ -136,42 +184,53 @@ static void write_combinations(const walk *own)
     if (own->set->combination_count == 0)
         return;
     write_read(own, 'a', 16);
-    if (own->chooses)
-        for (uint32_t i = 0; i < own->set->combination_count; i++)
-            write_choice(own, i);
+    for (uint32_t i = 0; own->chooses && i < own->set->combination_count; i++)
+        write_choice(own, i);
     for (uint32_t i = 0; i < own->set->combination_count; i++) {
         const hewn_combination *one = &own->set->combinations[i];
         bool guard = own->flavour == 1 && one->guarded;
-        const char *k = place(own);
-        hewn_text_print(own->text, "if(how==%uu) %sr%s=%sf_%s(%s%s,%s%s%s)", i + 1, each(own), k,
-                        guard ? "f_guard(" : "", one->function, one->swapped ? "r" : "a", k, one->swapped ? "a" : "r",
-                        k, is_blend(one->op) ? ",blend_size,inverse" : "");
+        const char *order = one->swapped ? "r,a" : "a,r";
+        if (own->how->masked)
+            hewn_text_print(own->text, "%s r%u=", own->type, i + 1);
+        else
+            hewn_text_print(own->text, "if(how==%uu) r=", i + 1);
+        hewn_text_print(own->text, "%sf_%s(%s%s)", guard ? "f_guard(" : "", one->function, order,
+                        is_blend(one->op) ? ",blend_size,inverse" : "");
         if (guard)
-            hewn_text_print(own->text, ",%s)", one->swapped ? "r,a" : "a,r");
+            hewn_text_print(own->text, ",%s)", order);
         hewn_text_append(own->text, ";\n");
     }
+    for (uint32_t i = 0; own->how->masked && i < own->set->combination_count; i++)
+        hewn_text_print(own->text, "r=mix(r,r%u,%s(how==%uu));\n", i + 1, own->bools, i + 1);
 }
 
 static void write_walk(const walk *own)
 {
     const hewn_instruction_set *set = own->set;
+    char each[64] = "", array[16] = "";
+    if (own->values > 1) {
+        snprintf(each, sizeof each, "[[unroll]] for (int k = 0; k < %u; k++) ", own->values);
+        snprintf(array, sizeof array, "[%u]", own->values);
+    }
     for (uint32_t i = 0; i < set->slots; i++)
-        hewn_text_print(own->text, "%s s%u%s;\n%ss%u%s=%s;\n", own->type, i, array(own), each(own), i, place(own),
-                        zero(own));
-    hewn_text_print(own->text, "hewn_words code=hewn_words(field_code);\n"
-                               "for(uint at=field_begin;at<field_end;at+=%uu){\n",
+        hewn_text_print(own->text, "%s s%u%s;\n%ss%u%s=%s;\n", own->type, i, array, each, i, place(own), zero(own));
+    hewn_text_print(own->text,
+                    "hewn_words code=hewn_words(field_code);\n"
+                    "for(uint at=field_begin;at<field_end;at+=%uu){\n",
                     set->words);
     write_fetch(own);
     if (own->chooses)
         hewn_text_append(own->text, "uint choice=0u;\n");
+    hewn_text_print(own->text, "%s{\n", each);
     write_arms(own);
     write_combinations(own);
     for (uint32_t i = 0; i < set->slots; i++)
         if (set->slots == 1)
-            hewn_text_print(own->text, "%ss0%s=r%s;\n", each(own), place(own), place(own));
+            hewn_text_print(own->text, "s0%s=r;\n", place(own));
         else
-            hewn_text_print(own->text, "%ss%u%s=mix(s%u%s,r%s,%s(to==%uu));\n", each(own), i, place(own), i, place(own),
-                            place(own), own->bools, i);
+            hewn_text_print(own->text, "s%u%s=mix(s%u%s,r,%s(to==%uu));\n", i, place(own), i, place(own), own->bools,
+                            i);
+    hewn_text_append(own->text, "}\n");
     if (own->chooses)
         hewn_text_append(own->text, "chosen|=choice<<2u*(made&15u);\nmade++;\n"
                                     "if((made&15u)==0u){\nchoices.at[first+(made>>4)-1u]=chosen;\nchosen=0u;\n}\n");
@@ -180,24 +239,24 @@ static void write_walk(const walk *own)
 
 /* --- functions --------------------------------------------------------------------------------------------------- */
 
-static walk started(walk kind, const hewn_instruction_set *set, hewn_text *text)
+static walk started(walk kind, const hewn_instruction_set *set, const hewn_walking *how, hewn_text *text)
 {
     kind.set = set;
+    kind.how = how;
     kind.text = text;
     return kind;
 }
 
-static void write_points(const hewn_instruction_set *set, uint32_t flavours, hewn_text *text)
+static void write_points(const hewn_instruction_set *set, const hewn_walking *how, uint32_t flavours, hewn_text *text)
 {
-    walk points = started(point_walk, set, text), words = started(word_walk, set, text);
-    write_bodies(&points);
+    walk points = started(point_walk, set, how, text), words = started(word_walk, set, how, text);
     if (flavours & HEWN_FLAVOUR_POINT) {
         hewn_text_append(text, "float field_point(float x,float y,float z)\n{\n");
         write_walk(&points);
         hewn_text_append(text, "return s0;\n}\n");
     }
     if (flavours & (HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_ROW)) {
-        hewn_text_append(text, "uint field_word_inside(uint i,vec4 y,float z)\n{\nfloat xs[8];\n"
+        hewn_text_append(text, "uint field_word_inside(uint i,vec4 ys,float z)\n{\nfloat xs[8];\n"
                                "[[unroll]] for (uint k = 0u; k < 8u; k++) xs[k]=sample_x(i+k);\n");
         write_walk(&words);
         hewn_text_append(text, "uint bits=0u;\n[[unroll]] for (int k = 0; k < 32; k++) "
@@ -208,10 +267,21 @@ static void write_points(const hewn_instruction_set *set, uint32_t flavours, hew
                                "return field_word_inside(i,vec4(y),z)&255u;\n}\n");
 }
 
-static void write_intervals(const hewn_instruction_set *set, uint32_t flavours, hewn_text *text)
+static void write_fours(const hewn_instruction_set *set, const hewn_walking *how, hewn_text *text)
 {
-    walk intervals = started(interval_walk, set, text), choices = started(choice_walk, set, text);
-    write_bodies(&intervals);
+    walk points = started(four_walk, set, how, text), gradients = started(gradients_walk, set, how, text);
+    hewn_text_append(text, "vec4 field_points(vec4 xs,vec4 ys,vec4 zs)\n{\n");
+    write_walk(&points);
+    hewn_text_append(text, "return vec4(s0[0],s0[1],s0[2],s0[3]);\n}\n"
+                           "void field_gradients(vec4 xs,vec4 ys,vec4 zs,out vec4 gradients[4])\n{\n");
+    write_walk(&gradients);
+    hewn_text_append(text, "[[unroll]] for (int k = 0; k < 4; k++) gradients[k]=s0[k];\n}\n");
+}
+
+static void write_intervals(const hewn_instruction_set *set, const hewn_walking *how, uint32_t flavours,
+                            hewn_text *text)
+{
+    walk intervals = started(interval_walk, set, how, text), choices = started(choice_walk, set, how, text);
     if (flavours & HEWN_FLAVOUR_INTERVAL) {
         hewn_text_append(text, "vec2 field_interval(vec2 x,vec2 y,vec2 z)\n{\n");
         write_walk(&intervals);
@@ -226,8 +296,10 @@ static void write_intervals(const hewn_instruction_set *set, uint32_t flavours, 
     }
 }
 
-void hewn_instruction_set_declare(const hewn_instruction_set *set, hewn_text *text)
+void hewn_instruction_set_declare(const hewn_instruction_set *set, const hewn_walking *how, hewn_text *text)
 {
+    if (how->together)
+        hewn_text_append(text, "#define FIELD_TOGETHER\n");
     hewn_text_print(text,
                     "layout(buffer_reference, std430, buffer_reference_align = 4) buffer hewn_words { uint at[]; };\n"
                     "layout(set = 0, binding = 0) uniform hewn_list_block { uvec2 hewn_whole, hewn_lists, hewn_ranges; "
@@ -243,15 +315,17 @@ void hewn_instruction_set_declare(const hewn_instruction_set *set, hewn_text *te
                     set->words);
 }
 
-void hewn_instruction_set_write(const hewn_instruction_set *set, uint32_t flavours, hewn_text *text)
+void hewn_instruction_set_write(const hewn_instruction_set *set, const hewn_walking *how, uint32_t flavours,
+                                hewn_text *text)
 {
     if (flavours & (HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_ROW))
-        write_points(set, flavours, text);
+        write_points(set, how, flavours, text);
     if (flavours & (HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_CHOICES))
-        write_intervals(set, flavours, text);
+        write_intervals(set, how, flavours, text);
+    if (flavours & HEWN_FLAVOUR_FOUR)
+        write_fours(set, how, text);
     if (flavours & HEWN_FLAVOUR_GRADIENT) {
-        walk gradients = started(gradient_walk, set, text);
-        write_bodies(&gradients);
+        walk gradients = started(gradient_walk, set, how, text);
         hewn_text_append(text, "vec4 field_gradient(float at_x,float at_y,float at_z)\n{\n"
                                "vec4 x=vec4(1.0,0.0,0.0,at_x),y=vec4(0.0,1.0,0.0,at_y),z=vec4(0.0,0.0,1.0,at_z);\n");
         write_walk(&gradients);

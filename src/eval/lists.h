@@ -10,7 +10,12 @@
  *       field_interval(), which also writes two bits an instruction, from word `first` on
  *   uint field_keep(hewn_words choices, uint first, bool write, hewn_words to, uint end)
  *       how many instructions those choices leave; with `write` they are copied to where the list `to` has instructions
- *       up to `end` */
+ *       up to `end`
+ * and with HEWN_FLAVOUR_FOUR
+ *   vec4 field_points(vec4 x, vec4 y, vec4 z)
+ *   void field_gradients(vec4 x, vec4 y, vec4 z, out vec4 gradients[4])
+ * `FIELD_TOGETHER` is defined where the kernel is made so that a subgroup reads instructions together: then no
+ * invocation may leave before the last evaluation, and what subgroups decide they decide by vote. */
 #ifndef HEWN_SRC_EVAL_LISTS_H
 #define HEWN_SRC_EVAL_LISTS_H
 
@@ -37,8 +42,11 @@ bool hewn_code_is_listed(const hewn_code *code);
 uint32_t hewn_code_instruction_count(const hewn_code *code);
 uint32_t hewn_code_instruction_bytes(const hewn_code *code);
 
-/* Two bits a choice. */
-#define HEWN_CHOICES_A_WORD 16u
+/* Kernels whose subgroups read together give one list to this many invocations in a row, or to a multiple. */
+#define HEWN_TOGETHER_MOST 16u
+
+/* Bytes that a list's buffer has past its end: what is read together may reach beyond the last instruction. */
+#define HEWN_LIST_SLACK 64u
 
 /* From the next submit on, slots are those of `ranges` (two words each: first instruction and count) in `lists`. */
 void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_buffer *ranges);

@@ -1,6 +1,8 @@
 /* Culling of a field in lists: each level's interval arithmetic walks the lists of the level above, and makes shorter
  * ones for the blocks it keeps. Counts come home between levels, since only they tell how large the lists are. */
 #include <string.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "base/error.h"
 #include "eval/lists.h"
@@ -81,7 +83,7 @@ static hewn_result choose(list_run *run, uint32_t totals[4], hewn_error *error)
 static hewn_result make_lists(list_run *run, uint64_t instructions, hewn_error *error)
 {
     list_level *level = &run->level;
-    uint64_t bytes = hewn_code_instruction_bytes(run->extractor->code) * instructions;
+    uint64_t bytes = hewn_code_instruction_bytes(run->extractor->code) * instructions + HEWN_LIST_SLACK;
     HEWN_TRY(take(run, "culling lists", (uint64_t)4 * level->kept, &level->list, error));
     HEWN_TRY(take(run, "culling origins", (uint64_t)4 * level->kept, &level->origins, error));
     HEWN_TRY(take(run, "ranges of lists", (uint64_t)8 * level->kept, &level->ranges, error));
@@ -130,6 +132,7 @@ hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct
         if (count > 0)
             HEWN_TRY(choose(&run, totals, error));
         run.level.kept = totals[0];
+        if (getenv("PROF")) fprintf(stderr, "level %u: tested %u kept %u instructions %u (%.1f each) bytes %u\n", i, run.level.tested, totals[0], totals[2], (double)totals[2]/totals[0], hewn_code_instruction_bytes(extractor->code));
         HEWN_TRY(make_lists(&run, totals[2], error));
         out->states[i] = run.level.states;
         run.above = run.level;

@@ -8,7 +8,7 @@
 #include "shared/lists.h"
 
 extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_vertices[],
-    hewn_text_choose[], hewn_text_keep_lists[];
+    hewn_text_choose[], hewn_text_keep_lists[], hewn_text_vertices_listed[];
 
 #define HEWN_SHADER(name)                                                                                              \
     extern const unsigned char hewn_shader_##name[];                                                                   \
@@ -32,19 +32,23 @@ static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *
         {{"cull", hewn_text_iso_head, hewn_text_cull, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_cull_push)},
          &extractor->cull,
          1},
-        {{"choose", hewn_text_iso_head, hewn_text_choose, HEWN_FLAVOUR_CHOICES, sizeof(struct hewn_choose_push)},
+        {{"choose", hewn_text_iso_head, hewn_text_choose, HEWN_FLAVOUR_CHOICES | HEWN_FLAVOUR_TOGETHER, sizeof(struct hewn_choose_push)},
          &extractor->choose,
          2},
         {{"keep_lists", hewn_text_iso_head, hewn_text_keep_lists, HEWN_FLAVOUR_CHOICES, sizeof(struct hewn_keep_push)},
          &extractor->keep_lists,
          2},
-        {{"signs", hewn_text_iso_head, hewn_text_signs, HEWN_FLAVOUR_WORD, sizeof(struct hewn_sign_push)},
+        {{"signs", hewn_text_iso_head, hewn_text_signs, HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_TOGETHER, sizeof(struct hewn_sign_push)},
          &extractor->signs,
          0},
         {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT,
           sizeof(struct hewn_vertex_push)},
          &extractor->vertices,
-         0},
+         1},
+        {{"vertices_listed", hewn_text_iso_head, hewn_text_vertices_listed, HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_TOGETHER,
+          sizeof(struct hewn_listed_vertex_push)},
+         &extractor->vertices,
+         2},
     };
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
         if (kernels[i].only != (listed ? 1 : 2))

@@ -1,8 +1,12 @@
 /* From active bricks to triangles: signs, counts, prefix sums, then every vertex and triangle at its place. */
 #include <string.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "base/error.h"
+#include "eval/lists.h"
 #include "iso/extractor.h"
+#include "shared/lists.h"
 
 static hewn_result take_surface(const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
                                 hewn_error *error)
@@ -113,6 +117,35 @@ static void record_spread(const hewn_extractor *extractor, const struct hewn_gri
     hewn_commands_dispatch(commands, extractor->spread, &push, &extractor->table, hewn_groups_for(bricks->count, 32));
 }
 
+/* The vertices on edges. In lists they are solved brick by brick. */
+static void record_vertices(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                            const hewn_surface *surface, const hewn_buffer buffers[3], const hewn_buffer *summary,
+                            hewn_commands *commands)
+{
+    uint64_t on_edges = surface->vertex_count - surface->centre_count;
+    const hewn_buffer *uniforms = hewn_code_uniforms(extractor->code);
+    if (hewn_code_is_listed(extractor->code)) {
+        struct hewn_listed_vertex_push push = {.grid = *grid,
+                                               .count = bricks->count,
+                                               .vertex_count = (uint32_t)on_edges,
+                                               .bricks = bricks->list->address,
+                                               .vertex_bases = surface->vertex_bases->address,
+                                               .positions = buffers[0].address,
+                                               .normals = buffers[1].address,
+                                               .summary = summary->address};
+        hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms,
+                               hewn_groups_for((uint64_t)bricks->count * 16, 64));
+        return;
+    }
+    struct hewn_vertex_push push = {.grid = *grid,
+                                    .count = (uint32_t)on_edges,
+                                    .bricks = bricks->list->address,
+                                    .positions = buffers[0].address,
+                                    .normals = buffers[1].address,
+                                    .summary = summary->address};
+    hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms, hewn_groups_for(on_edges, 64));
+}
+
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                               const hewn_surface *surface, const hewn_buffer buffers[3], hewn_workspace *workspace,
                               hewn_emission *out, hewn_error *error)
@@ -124,19 +157,15 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, summary, 0, summary->size, 0);
     bool refined = surface->asked;
+    double times[8] = {0};
+    hewn_commands_mark(commands);
     if (refined)
         hewn_mc33_record_spread(extractor, grid, bricks, surface, buffers, commands);
     else
         record_spread(extractor, grid, bricks, surface, buffers, commands);
-    uint64_t on_edges = surface->vertex_count - surface->centre_count;
-    struct hewn_vertex_push vertices = {.grid = *grid,
-                                        .count = (uint32_t)on_edges,
-                                        .bricks = bricks->list->address,
-                                        .positions = buffers[0].address,
-                                        .normals = buffers[1].address,
-                                        .summary = summary->address};
-    hewn_commands_dispatch(commands, extractor->vertices, &vertices, hewn_code_uniforms(extractor->code),
-                           hewn_groups_for(on_edges, 64));
+    hewn_commands_mark(commands);
+    record_vertices(extractor, grid, bricks, surface, buffers, summary, commands);
+    hewn_commands_mark(commands);
     hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
     struct hewn_triangle_push triangles = {.count = (uint32_t)surface->triangle_count,
                                            .links = surface->links->address,
@@ -144,8 +173,10 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
                                            .indices = buffers[2].address};
     hewn_commands_dispatch(commands, refined ? extractor->mc33.triangles : extractor->triangles, &triangles,
                            refined ? NULL : &extractor->table, hewn_groups_for(surface->triangle_count, 64));
+    hewn_commands_mark(commands);
     hewn_commands_copy(commands, summary, 0, results, 0, summary->size);
-    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    HEWN_TRY(hewn_commands_submit(&commands, times, error));
+    if (getenv("PROF")) fprintf(stderr, "bricks %u vertices %llu: spread %.3f vertices %.3f triangles %.3f\n", bricks->count, (unsigned long long)surface->vertex_count, times[1], times[2]-times[1], times[3]-times[2]);
     const uint32_t *words = results->mapped;
     out->caps = words[HEWN_SUMMARY_CAPS];
     memcpy(&out->max_residual, &words[HEWN_SUMMARY_RESIDUAL], sizeof out->max_residual);
