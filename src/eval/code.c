@@ -65,7 +65,7 @@ static size_t instruction_bytes(const hewn_instructions *instructions)
 static uint32_t invocations_together(const hewn_device *device)
 {
     uint32_t size = device->subgroup_size;
-    bool divides = size == 4 || size == 8 || size == HEWN_TOGETHER_MOST;
+    bool divides = size == 2 || size == 4 || size == HEWN_TOGETHER_MOST;
     return device->info.kind == HEWN_DEVICE_CPU && divides ? size : 0;
 }
 

@@ -250,7 +250,7 @@ static hewn_result start_set(hewn_instruction_set *set, const hewn_instruction_s
 /* --- words ------------------------------------------------------------------------------------------------------- */
 
 /* Room for the longest instruction; they are brought to the set's length once that is known. */
-enum { WORDS_MOST = 3 + HEWN_BODY_NUMBERS };
+enum { WORDS_MOST = (3 + HEWN_BODY_NUMBERS + HEWN_TOGETHER_MOST - 1) / HEWN_TOGETHER_MOST * HEWN_TOGETHER_MOST };
 
 static uint32_t float_bits(float value)
 {
@@ -300,7 +300,8 @@ static uint32_t words_of(const hewn_instruction_set *set)
     uint32_t most = 0;
     for (uint32_t i = 0; i < set->body_count; i++)
         most = set->bodies[i].numbers > most ? set->bodies[i].numbers : most;
-    return 1 + (set->blends ? 2 : 0) + most;
+    uint32_t words = 1 + (set->blends ? 2 : 0) + most;
+    return (words + HEWN_TOGETHER_MOST - 1) / HEWN_TOGETHER_MOST * HEWN_TOGETHER_MOST;
 }
 
 static hewn_result write_words(hewn_instructions *out, const assembly *parts, const hewn_instruction_set *known,
@@ -319,8 +320,10 @@ static hewn_result write_words(hewn_instructions *out, const assembly *parts, co
         out->set.words = words_of(&out->set);
     uint32_t head = out->set.blends ? 3 : 1;
     for (uint32_t i = 0; result == HEWN_OK && i < out->count; i++) /* towards the front, so in place */
-        for (uint32_t k = 0; k < out->set.words; k++)
-            wide[(size_t)i * out->set.words + k] = wide[(size_t)i * WORDS_MOST + (k < head ? k : k - head + 3)];
+        for (uint32_t k = 0; k < out->set.words; k++) {
+            uint32_t from = k < head ? k : k - head + 3;
+            wide[(size_t)i * out->set.words + k] = from < WORDS_MOST ? wide[(size_t)i * WORDS_MOST + from] : 0;
+        }
     out->words = wide;
     return result;
 }

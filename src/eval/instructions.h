@@ -13,6 +13,7 @@ enum {
     HEWN_COMBINATIONS_MAX = 15,
     HEWN_SLOTS_MAX = 15,
     HEWN_NO_SLOT = 15,
+    HEWN_TOGETHER_MOST = 8, /* invocations that read an instruction together; its length is a multiple */
     HEWN_BODY_STEPS = 16,   /* of one body */
     HEWN_BODY_INPUTS = 3,   /* slots that a body reads */
     HEWN_BODY_NUMBERS = 16, /* of one body */

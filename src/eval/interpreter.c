@@ -14,16 +14,20 @@ typedef struct walk {
     int flavour;       /* 0 point, 1 interval, 2 gradient */
     unsigned values;   /* at once: 1, 4 points, or 32 in four rows of eight */
     bool chooses;
+    bool repeated; /* walked again and again: what subgroups read together they keep */
     hewn_text *text;
 } walk;
 
+/* Instructions that are kept. */
+enum { KEPT = 32 };
+
 static const walk point_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 1};
-static const walk four_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 4};
+static const walk four_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 4, .repeated = true};
 static const walk word_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 32};
 static const walk interval_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .values = 1};
 static const walk choice_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .values = 1, .chooses = true};
 static const walk gradient_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2, .values = 1};
-static const walk gradients_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2, .values = 4};
+static const walk gradients_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2, .values = 4, .repeated = true};
 
 /* --- fetching ---------------------------------------------------------------------------------------------------- */
 
@@ -52,7 +56,10 @@ static void write_fetch(const walk *own)
 {
     uint32_t at = 1, n = own->how->together;
     for (uint32_t i = 0; n && i * n < own->set->words; i++)
-        hewn_text_print(own->text, "uint w%u=code.at[at+%uu+gl_SubgroupInvocationID];\n", i, i * n);
+        if (own->repeated)
+            hewn_text_print(own->text, "uint w%u=field_kept[(at-chunk)/%uu+%uu];\n", i, n, i);
+        else
+            hewn_text_print(own->text, "uint w%u=code.at[at+%uu+gl_SubgroupInvocationID];\n", i, i * n);
     hewn_text_append(own->text, "uint head=");
     write_word(own, 0);
     hewn_text_append(own->text, ",body=head&255u,how=head>>8&15u,to=head>>12&15u;\n");
@@ -204,6 +211,20 @@ static void write_combinations(const walk *own)
         hewn_text_print(own->text, "r=mix(r,r%u,%s(how==%uu));\n", i + 1, own->bools, i + 1);
 }
 
+/* Reading memory is slow on CPU drivers, lane by lane; an array of one's own is not. Here one invocation's variable
+ * holds one word of some, and the next one's the next. */
+static void write_keeping(const walk *own)
+{
+    uint32_t n = own->how->together, words = own->set->words;
+    hewn_text_print(own->text,
+                    "for(uint chunk=field_begin;chunk<field_end;chunk+=%uu){\n"
+                    "uint stop=min(field_end,chunk+%uu),wanted=field_kept_from==chunk?0u:(stop-chunk)/%uu;\n"
+                    "for(uint i=0u;i<wanted;i++)\n"
+                    "field_kept[i]=code.at[chunk+i*%uu+gl_SubgroupInvocationID];\n"
+                    "field_kept_from=chunk;\n",
+                    KEPT * words, KEPT * words, n, n);
+}
+
 static void write_walk(const walk *own)
 {
     const hewn_instruction_set *set = own->set;
@@ -214,10 +235,12 @@ static void write_walk(const walk *own)
     }
     for (uint32_t i = 0; i < set->slots; i++)
         hewn_text_print(own->text, "%s s%u%s;\n%ss%u%s=%s;\n", own->type, i, array, each, i, place(own), zero(own));
-    hewn_text_print(own->text,
-                    "hewn_words code=hewn_words(field_code);\n"
-                    "for(uint at=field_begin;at<field_end;at+=%uu){\n",
-                    set->words);
+    bool keeps = own->repeated && own->how->together;
+    hewn_text_append(own->text, "hewn_words code=hewn_words(field_code);\n");
+    if (keeps)
+        write_keeping(own);
+    hewn_text_print(own->text, "for(uint at=%s;at<%s;at+=%uu){\n", keeps ? "chunk" : "field_begin",
+                    keeps ? "stop" : "field_end", set->words);
     write_fetch(own);
     if (own->chooses)
         hewn_text_append(own->text, "uint choice=0u;\n");
@@ -234,7 +257,7 @@ static void write_walk(const walk *own)
     if (own->chooses)
         hewn_text_append(own->text, "chosen|=choice<<2u*(made&15u);\nmade++;\n"
                                     "if((made&15u)==0u){\nchoices.at[first+(made>>4)-1u]=chosen;\nchosen=0u;\n}\n");
-    hewn_text_append(own->text, "}\n");
+    hewn_text_append(own->text, keeps ? "}\n}\n" : "}\n");
 }
 
 /* --- functions --------------------------------------------------------------------------------------------------- */
@@ -299,17 +322,19 @@ static void write_intervals(const hewn_instruction_set *set, const hewn_walking 
 void hewn_instruction_set_declare(const hewn_instruction_set *set, const hewn_walking *how, hewn_text *text)
 {
     if (how->together)
-        hewn_text_append(text, "#define FIELD_TOGETHER\n");
+        hewn_text_print(text, "#define FIELD_TOGETHER\nuint field_kept[%u];\n", KEPT * set->words / how->together);
     hewn_text_print(text,
                     "layout(buffer_reference, std430, buffer_reference_align = 4) buffer hewn_words { uint at[]; };\n"
                     "layout(set = 0, binding = 0) uniform hewn_list_block { uvec2 hewn_whole, hewn_lists, hewn_ranges; "
                     "uint hewn_whole_count; };\n"
                     "#define FIELD_WORDS %uu\n"
                     "uvec2 field_code = hewn_whole;\n"
+                    "uint field_kept_from = 0xFFFFFFFFu;\n"
                     "uint field_begin = 0u, field_end = hewn_whole_count * FIELD_WORDS;\n"
                     "void field_select(uint slot)\n{\n"
                     "hewn_words ranges = hewn_words(hewn_ranges);\n"
                     "field_code = hewn_lists;\n"
+                    "field_kept_from = 0xFFFFFFFFu;\n"
                     "field_begin = ranges.at[2u * slot] * FIELD_WORDS;\n"
                     "field_end = field_begin + ranges.at[2u * slot + 1u] * FIELD_WORDS;\n}\n",
                     set->words);

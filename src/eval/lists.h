@@ -42,8 +42,8 @@ bool hewn_code_is_listed(const hewn_code *code);
 uint32_t hewn_code_instruction_count(const hewn_code *code);
 uint32_t hewn_code_instruction_bytes(const hewn_code *code);
 
-/* Kernels whose subgroups read together give one list to this many invocations in a row, or to a multiple. */
-#define HEWN_TOGETHER_MOST 16u
+/* Kernels made with HEWN_FLAVOUR_TOGETHER give one list to this many invocations in a row, or to a multiple. */
+#define HEWN_LIST_INVOCATIONS 8u
 
 /* Bytes that a list's buffer has past its end: what is read together may reach beyond the last instruction. */
 #define HEWN_LIST_SLACK 64u
