@@ -1,6 +1,8 @@
 #include "eval/bodies.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -47,7 +49,7 @@ static bool gather_with(const hewn_listing *listing, hewn_gathering *gathered, u
         steps += part->step_count;
         numbers += part->number_count;
     }
-    if (input_count > HEWN_BODY_INPUTS || steps > HEWN_BODY_STEPS || numbers > HEWN_BODY_NUMBERS)
+    if (input_count > HEWN_BODY_INPUTS || steps > HEWN_BODY_STEPS || numbers > HEWN_BODY_NUMBERS - HEWN_SLOPE_NUMBERS)
         return false;
     hewn_gathering *own = &gathered[at];
     for (uint32_t i = 0; i < input_count; i++)
@@ -103,35 +105,43 @@ typedef struct body_writer {
     const hewn_gathering *gathered;
     const hewn_gathering *body;
     hewn_text *texts;
-    uint32_t *numbers;
+    float *numbers;
     uint32_t number_count, written;
+    bool centred;
 } body_writer;
 
-/* How a value is called: in points, in intervals, in gradients, and whether it may be handed over bare. */
+/* Points, intervals, gradients, and what is written beside intervals: the point in the middle of the box. */
+enum { POINT, INTERVAL, GRADIENT, MIDDLE, FORMS };
+
+/* How a value is called in each, and whether it may be handed over bare. */
 typedef struct value_name {
-    char whole[3][24];
+    char whole[FORMS][24];
     char bare[8];
     bool number;
 } value_name;
 
-static const char *const body_types[3] = {"float", "vec2", "vec4"};
+static const char *const body_types[FORMS] = {"float", "vec2", "vec4", "float"};
 
 static value_name name_number(body_writer *writer, uint32_t parameter)
 {
     value_name name = {.number = true};
-    writer->numbers[writer->number_count] = parameter;
+    writer->numbers[writer->number_count] = writer->listing->parameters[parameter];
     snprintf(name.bare, sizeof name.bare, "q%u", writer->number_count++);
     snprintf(name.whole[0], sizeof name.whole[0], "%s", name.bare);
     snprintf(name.whole[1], sizeof name.whole[1], "f_number(%s)", name.bare);
     snprintf(name.whole[2], sizeof name.whole[2], "vec4(vec3(0.0),%s)", name.bare);
+    snprintf(name.whole[3], sizeof name.whole[3], "%s", name.bare);
     return name;
 }
 
 static value_name name_all(const char *prefix, uint32_t number)
 {
     value_name name = {0};
-    for (int i = 0; i < 3; i++)
-        snprintf(name.whole[i], sizeof name.whole[i], number == HEWN_NO_STEP ? "%s" : "%s%u", prefix, number);
+    for (int i = 0; i < FORMS; i++)
+        if (number == HEWN_NO_STEP)
+            snprintf(name.whole[i], sizeof name.whole[i], "%s%s", i == MIDDLE ? "middle." : "", prefix);
+        else
+            snprintf(name.whole[i], sizeof name.whole[i], "%s%u", i == MIDDLE ? "m" : prefix, number);
     return name;
 }
 
@@ -152,9 +162,10 @@ static value_name write_operand(body_writer *writer, const hewn_gathering *own, 
 static void write_call(const body_writer *writer, const hewn_code_step *step, const value_name *operands,
                        uint32_t first_number, uint32_t made, int flavour)
 {
-    hewn_text *text = &writer->texts[flavour];
-    bool guard = flavour == 1 && hewn_listing_needs_guard(writer->listing, step);
-    hewn_text_print(text, "%s n%u=%sf_%s(", body_types[flavour], made, guard ? "f_guard(" : "", step->function);
+    hewn_text *text = &writer->texts[flavour == MIDDLE ? INTERVAL : flavour];
+    bool guard = flavour == INTERVAL && hewn_listing_needs_guard(writer->listing, step);
+    hewn_text_print(text, "%s %s%u=%sf_%s(", body_types[flavour], flavour == MIDDLE ? "m" : "n", made,
+                    guard ? "f_guard(" : "", step->function);
     for (uint32_t k = 0; k < step->in_count; k++)
         hewn_text_print(text, "%s%s", k ? "," : "",
                         hewn_listing_is_plain(writer->listing, step, k) ? operands[k].bare
@@ -183,21 +194,106 @@ static value_name write_value(body_writer *writer, uint32_t at)
         operands[k] = write_operand(writer, &writer->gathered[at], step, k);
     uint32_t first = writer->number_count, made = writer->written++;
     for (uint32_t i = 0; i < step->parameter_count; i++)
-        writer->numbers[writer->number_count++] = step->parameter + i;
-    for (int flavour = 0; flavour < 3; flavour++)
+        writer->numbers[writer->number_count++] = writer->listing->parameters[step->parameter + i];
+    for (int flavour = 0; flavour < (writer->centred ? FORMS : MIDDLE); flavour++)
         write_call(writer, step, operands, first, made, flavour);
     return name_all("n", made);
 }
 
-void hewn_body_write(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step, hewn_text texts[3],
-                     uint32_t numbers[HEWN_BODY_NUMBERS], uint32_t *number_count)
+/* The row (factors of x, y, z, then what is added) of an operand that is affine in the variables. */
+static bool frame_row(const hewn_listing *listing, const hewn_code_step *step, double row[4])
 {
+    row[0] = row[1] = row[2] = row[3] = 0;
+    const float *p = listing->parameters + step->parameter;
+    if (step->op <= HEWN_OP_Z) {
+        row[step->op - HEWN_OP_X] = 1;
+        return true;
+    }
+    if (step->op == HEWN_OP_CONSTANT) {
+        row[3] = (double)p[0];
+        return true;
+    }
+    if (step->op != HEWN_OP_AFFINE && step->op != HEWN_OP_PLANE)
+        return false;
+    bool shift = step->parameter_count == 1;
+    for (uint32_t i = 0; i < step->in_count; i++) {
+        const hewn_code_step *in = &listing->steps[step->in[i]];
+        if (in->op > HEWN_OP_Z)
+            return false;
+        row[in->op - HEWN_OP_X] += shift ? 1 : (double)p[i];
+    }
+    row[3] = (double)p[step->parameter_count - 1];
+    return true;
+}
+
+/* Something not below the largest singular value of three rows: the fourth root of the trace of (A A')^2 is, and for a
+ * turned frame with one scale it would be that times the fourth root of 3; so squares of A A' are taken until the trace
+ * tells the greatest eigenvalue to a millionth. */
+static double steepness(double rows[3][4])
+{
+    double m[3][3], log_scale = 0, power = 1;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            m[i][k] = rows[i][0] * rows[k][0] + rows[i][1] * rows[k][1] + rows[i][2] * rows[k][2];
+    for (int round = 0; round < 22; round++) {
+        double trace = m[0][0] + m[1][1] + m[2][2], square[3][3];
+        if (!(trace > 0))
+            return 0;
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++)
+                square[i][k] = (m[i][0] * m[0][k] + m[i][1] * m[1][k] + m[i][2] * m[2][k]) / (trace * trace);
+        memcpy(m, square, sizeof m);
+        log_scale += log(trace) / power;
+        power *= 2;
+    }
+    log_scale += log(m[0][0] + m[1][1] + m[2][2]) / power;
+    return exp(0.5 * log_scale) * (1 + 1e-6);
+}
+
+/* How steep a shape in a frame is at most, and what its rounding errors grow with: the sum of all factors, by which
+ * coordinates come in, and the sum of everything else. */
+static bool slope_numbers(const hewn_listing *listing, const hewn_code_step *step, float numbers[HEWN_SLOPE_NUMBERS])
+{
+    double rows[3][4], factors = 0, rest = 0;
+    if (step->op < HEWN_OP_SPHERE || step->op > HEWN_OP_CONE || !step->sure)
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (!frame_row(listing, &listing->steps[step->in[i]], rows[i]))
+            return false;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++)
+            factors += fabs(rows[i][k]);
+        rest += fabs(rows[i][3]);
+    }
+    for (uint32_t i = 0; i < step->parameter_count; i++)
+        rest += fabs((double)listing->parameters[step->parameter + i]);
+    numbers[0] = (float)(steepness(rows) * (1 + 1e-6));
+    numbers[1] = (float)(factors * (1 + 1e-6));
+    numbers[2] = (float)(rest * (1 + 1e-6));
+    return numbers[0] < 1e15f && numbers[1] < 1e15f && numbers[2] < 1e15f;
+}
+
+void hewn_body_write(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step, hewn_text texts[3],
+                     float numbers[HEWN_BODY_NUMBERS], uint32_t *number_count)
+{
+    float slope[HEWN_SLOPE_NUMBERS];
+    bool centred = gathered[step].input_count == 0 && slope_numbers(listing, &listing->steps[step], slope);
     body_writer writer = {.listing = listing,
                           .gathered = gathered,
                           .body = &gathered[step],
                           .texts = texts,
-                          .numbers = numbers};
+                          .numbers = numbers,
+                          .centred = centred};
+    if (centred)
+        hewn_text_append(&texts[INTERVAL], "vec3 middle=f_middle(x,y,z);\n");
     value_name result = write_value(&writer, step);
+    if (centred) {
+        uint32_t first = writer.number_count;
+        hewn_text_print(&texts[INTERVAL], "%s=f_about(%s,%s,middle,x,y,z,q%u,q%u,q%u);\n", result.whole[INTERVAL],
+                        result.whole[INTERVAL], result.whole[MIDDLE], first, first + 1, first + 2);
+        for (uint32_t i = 0; i < HEWN_SLOPE_NUMBERS; i++)
+            numbers[writer.number_count++] = slope[i];
+    }
     for (int flavour = 0; flavour < 3; flavour++)
         hewn_text_print(&texts[flavour], "return %s;\n", result.whole[flavour]);
     *number_count = writer.number_count;

@@ -263,7 +263,8 @@ static hewn_result write_one(const assembly *parts, const item *one, hewn_instru
                              uint32_t words[WORDS_MOST], bool *fits, hewn_error *error)
 {
     hewn_body body = {0};
-    uint32_t numbers[HEWN_BODY_NUMBERS], which = 0, combine = 0;
+    float numbers[HEWN_BODY_NUMBERS];
+    uint32_t which = 0, combine = 0;
     if (one->body != HEWN_NO_STEP) {
         hewn_body_write(parts->listing, parts->gathered, one->body, body.texts, numbers, &body.numbers);
         hewn_result result = HEWN_OK;
@@ -277,7 +278,7 @@ static hewn_result write_one(const assembly *parts, const item *one, hewn_instru
         body.inputs = parts->gathered[one->body].input_count;
         which = find_body(set, &body, may_add);
         for (uint32_t i = 0; i < count; i++)
-            words[3 + i] = float_bits(parts->listing->parameters[numbers[i]]);
+            words[3 + i] = float_bits(numbers[i]);
     }
     if (one->combine != HEWN_NO_STEP) {
         const hewn_code_step *step = &parts->listing->steps[one->combine];
