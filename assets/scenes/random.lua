@@ -3,7 +3,7 @@
 bounds(-1.1, -1.1, -1.1, 1.1, 1.1, 1.1)
 
 local n = param("n", 1000, {min = 1, max = 100000, integer = true, help = "how many shapes"})
-local melt = param("melt", 0.3, {min = 0, max = 1, help = "how far they melt together, in mean distances of shapes"})
+local melt = param("melt", 0.2, {min = 0, max = 1, help = "how far they melt together, in mean distances of shapes"})
 local seed = param("seed", 1, {min = 0, integer = true, help = "another heap for each"})
 math.randomseed(seed)
 
@@ -21,7 +21,7 @@ local shapes = {
 
 local heap
 for i = 1, n do
-    local size = room * between(0.4, 0.8)
+    local size = room * between(0.3, 0.6)
     local shape = shapes[math.random(#shapes)](size)
         :rotate(between(-1, 1), between(-1, 1), between(-1, 1), between(0, 360))
         :move(between(-1, 1), between(-1, 1), between(-1, 1))

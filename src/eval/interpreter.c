@@ -19,7 +19,7 @@ typedef struct walk {
 } walk;
 
 /* Instructions that are kept. */
-enum { KEPT = 32 };
+enum { KEPT = 64 };
 
 static const walk point_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 1};
 static const walk four_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 4, .repeated = true};
