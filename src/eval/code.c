@@ -1,8 +1,6 @@
 #include "eval/code.h"
 
 #include <string.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -74,6 +72,7 @@ static hewn_result write_instructions(hewn_device *device, hewn_code *code, hewn
     const hewn_instructions *list = &code->instructions;
     size_t bytes = instruction_bytes(list);
     code->walking = (hewn_walking){.masked = device->info.kind == HEWN_DEVICE_CPU,
+                                   .whole = code->walking.whole,
                                    .together = invocations_together(device)};
     HEWN_TRY(create_filled(device, bytes + HEWN_LIST_SLACK, list->words, bytes, &code->parameters, error));
     const hewn_list_block block = {.whole = code->parameters.address, .whole_count = list->count};
@@ -168,7 +167,6 @@ static hewn_result choose_evaluation(hewn_code *code, hewn_evaluation evaluation
     if (evaluation == HEWN_EVALUATION_STRAIGHT)
         return HEWN_OK;
     HEWN_TRY(hewn_instructions_create(&code->instructions, &code->listing, NULL, &code->listed, error));
-    if (code->listed && getenv("PROF")) { const hewn_instruction_set *q = &code->instructions.set; fprintf(stderr, "instructions %u bodies %u combos %u words %u slots %u\n", code->instructions.count, q->body_count, q->combination_count, q->words, q->slots); if (getenv("BODIES")) for (uint32_t i = 0; i < q->body_count; i++) fprintf(stderr, "%u: %s\n", i, q->bodies[i].texts[0].bytes); }
     if (code->listed && evaluation == HEWN_EVALUATION_AUTO && code->instructions.prunable < LISTED_FROM) {
         hewn_instructions_destroy(&code->instructions);
         code->listed = false;
@@ -187,6 +185,7 @@ hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, he
         hewn_free(code);
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a field's code");
     }
+    code->walking.whole = desc->whole;
     hewn_result result = hewn_listing_create(&code->listing, field, root, error);
     if (result == HEWN_OK) {
         code->place = choose_place(device, &code->listing, desc->numbers);

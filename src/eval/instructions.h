@@ -64,6 +64,7 @@ void hewn_instructions_destroy(hewn_instructions *instructions);
 /* How a device is best served. */
 typedef struct hewn_walking {
     bool masked;       /* it runs every arm of a condition anyway */
+    bool whole;        /* nothing is pruned */
     uint32_t together; /* invocations that read an instruction together, 0: each reads all of it */
 } hewn_walking;
 

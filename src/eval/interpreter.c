@@ -313,6 +313,7 @@ static void write_intervals(const hewn_instruction_set *set, const hewn_walking 
     if (flavours & HEWN_FLAVOUR_CHOICES) {
         hewn_text_append(text, "vec2 field_choose(vec2 x,vec2 y,vec2 z,hewn_words choices,uint first)\n{\n"
                                "uint made=0u,chosen=0u;\nbool near=f_result(vec2(0.0),x,y,z).x==0.0;\n");
+        hewn_text_append(text, how->whole ? "near=false;\n" : "");
         write_walk(&choices);
         hewn_text_append(text, "if((made&15u)!=0u)\nchoices.at[first+(made>>4)]=chosen;\n"
                                "return f_result(s0,x,y,z);\n}\n");

@@ -31,6 +31,7 @@ typedef enum hewn_evaluation {
 typedef struct hewn_code_desc {
     hewn_numbers numbers; /* of straight code */
     hewn_evaluation evaluation;
+    bool whole; /* no list is pruned: for comparison */
 } hewn_code_desc;
 
 hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, hewn_node root,

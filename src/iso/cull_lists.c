@@ -1,8 +1,6 @@
 /* Culling of a field in lists: each level's interval arithmetic walks the lists of the level above, and makes shorter
  * ones for the blocks it keeps. Counts come home between levels, since only they tell how large the lists are. */
 #include <string.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "base/error.h"
 #include "eval/lists.h"
@@ -129,10 +127,10 @@ hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct
         if (count > UINT32_MAX / 4)
             return hewn_fail(error, HEWN_LIMIT, "%llu blocks are too many to cull at once", (unsigned long long)count);
         run.level = (list_level){.tested = (uint32_t)count, .size = size, .choice_words = words};
-        if (count > 0)
-            HEWN_TRY(choose(&run, totals, error));
+        HEWN_TRY(choose(&run, totals, error));
         run.level.kept = totals[0];
-        if (getenv("PROF")) fprintf(stderr, "level %u: tested %u kept %u instructions %u (%.1f each) bytes %u\n", i, run.level.tested, totals[0], totals[2], (double)totals[2]/totals[0], hewn_code_instruction_bytes(extractor->code));
+        if (totals[0] == 0)
+            return HEWN_OK;
         HEWN_TRY(make_lists(&run, totals[2], error));
         out->states[i] = run.level.states;
         run.above = run.level;

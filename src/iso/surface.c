@@ -1,7 +1,5 @@
 /* From active bricks to triangles: signs, counts, prefix sums, then every vertex and triangle at its place. */
 #include <string.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "base/error.h"
 #include "eval/lists.h"
@@ -157,15 +155,11 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, summary, 0, summary->size, 0);
     bool refined = surface->asked;
-    double times[8] = {0};
-    hewn_commands_mark(commands);
     if (refined)
         hewn_mc33_record_spread(extractor, grid, bricks, surface, buffers, commands);
     else
         record_spread(extractor, grid, bricks, surface, buffers, commands);
-    hewn_commands_mark(commands);
     record_vertices(extractor, grid, bricks, surface, buffers, summary, commands);
-    hewn_commands_mark(commands);
     hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
     struct hewn_triangle_push triangles = {.count = (uint32_t)surface->triangle_count,
                                            .links = surface->links->address,
@@ -173,10 +167,8 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
                                            .indices = buffers[2].address};
     hewn_commands_dispatch(commands, refined ? extractor->mc33.triangles : extractor->triangles, &triangles,
                            refined ? NULL : &extractor->table, hewn_groups_for(surface->triangle_count, 64));
-    hewn_commands_mark(commands);
     hewn_commands_copy(commands, summary, 0, results, 0, summary->size);
-    HEWN_TRY(hewn_commands_submit(&commands, times, error));
-    if (getenv("PROF")) fprintf(stderr, "bricks %u vertices %llu: spread %.3f vertices %.3f triangles %.3f\n", bricks->count, (unsigned long long)surface->vertex_count, times[1], times[2]-times[1], times[3]-times[2]);
+    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
     const uint32_t *words = results->mapped;
     out->caps = words[HEWN_SUMMARY_CAPS];
     memcpy(&out->max_residual, &words[HEWN_SUMMARY_RESIDUAL], sizeof out->max_residual);
