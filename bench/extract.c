@@ -1,5 +1,5 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process. usage: extract [--runs N] [--res N] [--peers 0] [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger, random,
+ * process. usage: extract [--runs N] [--res N] [--peers 0] [--as listed|straight] [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger, random,
  * random100, random10000. */
 #include <math.h>
 #include <stdio.h>
@@ -14,6 +14,7 @@
 #include "samples.h"
 
 #include "base/clock.h"
+#include "iso/extractor.h"
 
 #define THREADS 2
 
@@ -28,7 +29,8 @@ typedef struct contest {
 } contest;
 
 static const hewn_scene_setting level_four[] = {{"L", 4}};
-static const hewn_scene_setting hundred[] = {{"n", 100}}, thousand[] = {{"n", 1000}}, myriad[] = {{"n", 10000}};
+static const hewn_scene_setting hundred[] = {{"n", 100}}, thousand[] = {{"n", 1000}}, myriad[] = {{"n", 10000}},
+                                few[] = {{"n", 25}}, some[] = {{"n", 50}};
 
 static const contest contests[] = {
     {"csg", "csg.lua", NULL, 0, &dense_csg, 512, false},
@@ -36,14 +38,23 @@ static const contest contests[] = {
     {"menger", "menger.lua", level_four, 1, &dense_menger4, 512, false},
     {"random", "random.lua", thousand, 1, NULL, 256, false},
     {"random100", "random.lua", hundred, 1, NULL, 256, false},
+    {"random25", "random.lua", few, 1, NULL, 256, false},
+    {"random50", "random.lua", some, 1, NULL, 256, false},
     {"random10000", "random.lua", myriad, 1, NULL, 256, true},
 };
 
 typedef struct outcome {
     double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];
     double stage[4];
+    double first; /* compiling and the first run */
+    bool listed;
     uint64_t hewn_triangles, peer_triangles;
 } outcome;
+
+typedef struct manner {
+    hewn_evaluation evaluation;
+    bool peers;
+} manner;
 
 static void stop_on(hewn_result result, const hewn_error *error)
 {
@@ -93,7 +104,7 @@ static void run_peers(const peer *subject, uint32_t resolution, float *values, d
 }
 
 static void run_contest(hewn_device *device, const contest *entry, const char *folder, uint32_t resolution, int runs,
-                        bool with_peers, outcome *out)
+                        const manner *how, outcome *out)
 {
     char path[4096];
     hewn_error error = {0};
@@ -106,9 +117,11 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
     if (!hewn_scene_bounds(scene, &bounds))
         stop_on(hewn_field_find_box(hewn_scene_field(scene), hewn_field_root(hewn_scene_field(scene)), &bounds, &error),
                 &error);
-    stop_on(hewn_extractor_create(device, hewn_scene_field(scene), hewn_field_root(hewn_scene_field(scene)), &extractor,
-                                  &error),
+    double compile = hewn_clock_now();
+    stop_on(hewn_extractor_create_as(device, hewn_scene_field(scene), hewn_field_root(hewn_scene_field(scene)),
+                                     &(hewn_code_desc){.evaluation = how->evaluation}, &extractor, &error),
             &error);
+    out->listed = hewn_code_is_listed(extractor->code);
     size_t samples = (size_t)resolution + 1;
     float *values = malloc(samples * samples * samples * sizeof *values);
     if (!values)
@@ -120,9 +133,10 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
     } else {
         subject.heap = heap_read(hewn_scene_field(scene), &subject.heap_count);
     }
-    bool peers = with_peers && !entry->alone && (subject.field || subject.heap);
+    bool peers = how->peers && !entry->alone && (subject.field || subject.heap);
     double unused[2];
     run_hewn(extractor, &bounds, resolution, unused, out);
+    out->first = hewn_clock_now() - compile;
     if (peers && entry->dense)
         run_peers(&subject, resolution, values, unused, unused + 1, out);
     for (int i = 0; i < runs; i++) {
@@ -149,17 +163,18 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
 {
     double ours = bench_median(result->hewn, runs), sampling = bench_median(result->sampling, runs);
     double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
-    printf("%-12s %5u  %8.3f  %8.3f + %-7.3f  %5.2fx   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, read back "
-           "%.3f\n",
-           entry->name, resolution, ours, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles,
+    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, "
+           "read back %.3f\n",
+           entry->name, resolution, result->listed ? "lists" : "straight", result->first, ours, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles,
            (unsigned long long)result->peer_triangles, result->stage[0], result->stage[1], result->stage[2],
            result->stage[3]);
     if (json)
         fprintf(json,
-                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"runs\": %d, \"hewn_seconds\": %.4f, "
+                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, \"first_seconds\": %.4f, "
+                "\"hewn_seconds\": %.4f, "
                 "\"sampling_seconds\": %.4f, "
                 "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"triangles\": %llu}",
-                first ? "" : ",", entry->name, resolution, runs, ours, sampling, meshing, ratio,
+                first ? "" : ",", entry->name, resolution, result->listed ? "lists" : "straight", runs, result->first, ours, sampling, meshing, ratio,
                 (unsigned long long)result->hewn_triangles);
 }
 
@@ -176,7 +191,7 @@ int main(int argc, char **argv)
     const char *folder = getenv("HEWN_SCENES");
     int runs = 5, at = 1;
     uint32_t wanted_resolution = 0;
-    bool with_peers = true;
+    manner how = {HEWN_EVALUATION_AUTO, true};
     FILE *json = NULL;
     for (; at + 1 < argc && strncmp(argv[at], "--", 2) == 0; at += 2) {
         if (strcmp(argv[at], "--runs") == 0)
@@ -184,7 +199,11 @@ int main(int argc, char **argv)
         else if (strcmp(argv[at], "--res") == 0)
             wanted_resolution = (uint32_t)atoi(argv[at + 1]);
         else if (strcmp(argv[at], "--peers") == 0)
-            with_peers = atoi(argv[at + 1]) != 0;
+            how.peers = atoi(argv[at + 1]) != 0;
+        else if (strcmp(argv[at], "--as") == 0)
+            how.evaluation = strcmp(argv[at + 1], "listed") == 0     ? HEWN_EVALUATION_LISTED
+                             : strcmp(argv[at + 1], "straight") == 0 ? HEWN_EVALUATION_STRAIGHT
+                                                                     : HEWN_EVALUATION_AUTO;
         else if (strcmp(argv[at], "--json") == 0)
             json = fopen(argv[at + 1], "w");
     }
@@ -195,7 +214,7 @@ int main(int argc, char **argv)
     printf(
         "device %s; dense sampling in C and VTK flying edges (%s) on %d threads; medians of %d runs in turn, seconds\n",
         hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
-    printf("%-12s %5s  %8s  %18s  %6s   %9s %9s\n", "scene", "cells", "Hewn", "sampling + VTK", "ratio", "triangles",
+    printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn", "sampling + VTK", "ratio", "triangles",
            "VTK's");
     if (json)
         fprintf(json, "[");
@@ -205,7 +224,7 @@ int main(int argc, char **argv)
             continue;
         outcome result = {0};
         uint32_t resolution = wanted_resolution ? wanted_resolution : contests[i].resolution;
-        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, with_peers, &result);
+        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, &how, &result);
         print_outcome(json, &contests[i], resolution, &result, runs, first);
         first = false;
         fflush(stdout);

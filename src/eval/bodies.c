@@ -273,6 +273,16 @@ static bool slope_numbers(const hewn_listing *listing, const hewn_code_step *ste
     return numbers[0] < 1e15f && numbers[1] < 1e15f && numbers[2] < 1e15f;
 }
 
+uint32_t hewn_body_weight(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step)
+{
+    const hewn_code_step *own = &listing->steps[step];
+    uint32_t weight = hewn_listing_weight(own);
+    for (uint32_t k = 0; k < own->in_count; k++)
+        if (gathered[step].absorbed >> k & 1)
+            weight += hewn_body_weight(listing, gathered, own->in[k]);
+    return weight;
+}
+
 void hewn_body_write(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step, hewn_text texts[3],
                      float numbers[HEWN_BODY_NUMBERS], uint32_t *number_count)
 {

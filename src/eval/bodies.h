@@ -26,6 +26,7 @@ bool hewn_body_absorbable(const hewn_listing *listing, const hewn_gathering *gat
 
 /* The body in three flavours (appended), and its numbers. Where it is a shape in an affine frame, intervals are also taken
  * about the middle of the box, from how steep it can be at most: that is the better the more the frame is turned. */
+uint32_t hewn_body_weight(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step);
 void hewn_body_write(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step, hewn_text texts[3],
                      float numbers[HEWN_BODY_NUMBERS], uint32_t *number_count);
 

@@ -159,15 +159,29 @@ static hewn_result choose_blocks(hewn_code *code, hewn_error *error)
     return HEWN_OK;
 }
 
-/* Lists pay from some dozens of combinations on (docs/performance.md). */
-enum { LISTED_FROM = 48 };
+/* Lists pay where all of the field costs about this many times what one instruction of a list does, which on CPU
+ * devices is the sum of all its kinds and of reading it (docs/performance.md). */
+enum { LISTED_FROM = 12, READING = 60, A_SLOT = 6 };
+
+static bool lists_pay(const hewn_code *code)
+{
+    const hewn_instruction_set *set = &code->instructions.set;
+    uint64_t all = 0, one = READING + (uint64_t)A_SLOT * set->slots;
+    for (size_t i = 0; i < code->listing.count; i++)
+        all += hewn_listing_weight(&code->listing.steps[i]);
+    for (uint32_t i = 0; i < set->body_count; i++)
+        one += set->bodies[i].weight;
+    for (uint32_t i = 0; i < set->combination_count; i++)
+        one += set->combinations[i].weight;
+    return code->instructions.prunable * 3 >= code->instructions.count && all >= LISTED_FROM * one;
+}
 
 static hewn_result choose_evaluation(hewn_code *code, hewn_evaluation evaluation, hewn_error *error)
 {
     if (evaluation == HEWN_EVALUATION_STRAIGHT)
         return HEWN_OK;
     HEWN_TRY(hewn_instructions_create(&code->instructions, &code->listing, NULL, &code->listed, error));
-    if (code->listed && evaluation == HEWN_EVALUATION_AUTO && code->instructions.prunable < LISTED_FROM) {
+    if (code->listed && evaluation == HEWN_EVALUATION_AUTO && !lists_pay(code)) {
         hewn_instructions_destroy(&code->instructions);
         code->listed = false;
     }

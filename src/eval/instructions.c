@@ -232,6 +232,7 @@ static hewn_result start_set(hewn_instruction_set *set, const hewn_instruction_s
             hewn_text_append(&set->bodies[i].texts[k], known ? known->bodies[i].texts[k].bytes : "return b;\n");
         set->bodies[i].numbers = known ? known->bodies[i].numbers : 0;
         set->bodies[i].inputs = known ? known->bodies[i].inputs : 1;
+        set->bodies[i].weight = known ? known->bodies[i].weight : 0;
         set->body_count++;
     }
     if (known) {
@@ -275,6 +276,7 @@ static hewn_result write_one(const assembly *parts, const item *one, hewn_instru
             return result;
         }
         uint32_t count = body.numbers;
+        body.weight = hewn_body_weight(parts->listing, parts->gathered, one->body);
         body.inputs = parts->gathered[one->body].input_count;
         which = find_body(set, &body, may_add);
         for (uint32_t i = 0; i < count; i++)
@@ -283,7 +285,7 @@ static hewn_result write_one(const assembly *parts, const item *one, hewn_instru
     if (one->combine != HEWN_NO_STEP) {
         const hewn_code_step *step = &parts->listing->steps[one->combine];
         const hewn_combination wanted = {step->op, step->function, one->swapped,
-                                         hewn_listing_needs_guard(parts->listing, step)};
+                                         hewn_listing_needs_guard(parts->listing, step), hewn_listing_weight(step)};
         combine = 1 + find_combination(set, &wanted, may_add);
         set->blends = set->blends || (may_add && step->parameter_count > 0);
         for (uint32_t i = 0; i < step->parameter_count; i++)

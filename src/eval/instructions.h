@@ -26,6 +26,7 @@ typedef struct hewn_body {
     hewn_text texts[3]; /* what stands between its braces: point, interval, gradient */
     uint32_t numbers;
     uint32_t inputs; /* slots it reads */
+    uint32_t weight; /* see hewn_listing_weight() */
 } hewn_body;
 
 /* Combination i + 1; 0 is none: the body's value alone. */
@@ -34,6 +35,7 @@ typedef struct hewn_combination {
     const char *function;
     bool swapped; /* the body's value is the first operand */
     bool guarded; /* intervals may not be finite */
+    uint32_t weight;
 } hewn_combination;
 
 /* An instruction's words: the head (body 8 bits, combination 4, out, a, b, c, d 4 each), two numbers of the blend where

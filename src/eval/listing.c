@@ -149,6 +149,40 @@ void hewn_listing_destroy(hewn_listing *listing)
     memset(listing, 0, sizeof *listing);
 }
 
+uint32_t hewn_listing_weight(const hewn_code_step *step)
+{
+    if (!step->function)
+        return 0;
+    switch (step->op) {
+    case HEWN_OP_SIN:
+    case HEWN_OP_COS:
+    case HEWN_OP_TAN:
+    case HEWN_OP_ASIN:
+    case HEWN_OP_ACOS:
+    case HEWN_OP_ATAN:
+    case HEWN_OP_ATAN2:
+    case HEWN_OP_EXP:
+    case HEWN_OP_LN:
+    case HEWN_OP_MOD: return 30;
+    case HEWN_OP_AFFINE:
+    case HEWN_OP_PLANE: return 2 * step->in_count;
+    case HEWN_OP_SQRT:
+    case HEWN_OP_DIV: return 6;
+    case HEWN_OP_SPHERE:
+    case HEWN_OP_CAPSULE: return 12;
+    case HEWN_OP_BOX:
+    case HEWN_OP_ROUNDED_BOX:
+    case HEWN_OP_TORUS:
+    case HEWN_OP_CYLINDER: return 22;
+    case HEWN_OP_CONE:
+    case HEWN_OP_BLEND_EXPONENTIAL: return 70;
+    case HEWN_OP_BLEND_QUADRATIC:
+    case HEWN_OP_BLEND_CUBIC:
+    case HEWN_OP_BLEND_CIRCULAR: return 16;
+    default: return 2;
+    }
+}
+
 /* --- text -------------------------------------------------------------------------------------------------------- */
 
 typedef enum listing_flavour { POINT, INTERVAL, GRADIENT } listing_flavour;

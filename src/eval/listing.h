@@ -46,6 +46,9 @@ bool hewn_listing_is_plain(const hewn_listing *listing, const hewn_code_step *st
 /* Whether the step's interval, or an operand's, may not be finite, so that f_guard must look. */
 bool hewn_listing_needs_guard(const hewn_listing *listing, const hewn_code_step *step);
 
+/* About how many instructions of a processor the step takes at a point. */
+uint32_t hewn_listing_weight(const hewn_code_step *step);
+
 /* Appends the functions of `flavours`; the library must precede. Parameter i is P(i), or, where numbers are `fixed`, a
  * literal. */
 void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text);
