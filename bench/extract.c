@@ -1,6 +1,6 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process. usage: extract [--runs N] [--res N] [--peers 0] [--as listed|straight] [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger, random,
- * random100, random10000. */
+ * process. usage: extract [--runs N] [--res N] [--peers 0] [--as listed|straight] [--json FILE] [SCENE ...], SCENE one
+ * of csg, gyroid, menger, random, random100, random10000. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -163,19 +163,21 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
 {
     double ours = bench_median(result->hewn, runs), sampling = bench_median(result->sampling, runs);
     double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
-    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, "
-           "read back %.3f\n",
-           entry->name, resolution, result->listed ? "lists" : "straight", result->first, ours, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles,
-           (unsigned long long)result->peer_triangles, result->stage[0], result->stage[1], result->stage[2],
-           result->stage[3]);
+    printf(
+        "%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, "
+        "read back %.3f\n",
+        entry->name, resolution, result->listed ? "lists" : "straight", result->first, ours, sampling, meshing, ratio,
+        (unsigned long long)result->hewn_triangles, (unsigned long long)result->peer_triangles, result->stage[0],
+        result->stage[1], result->stage[2], result->stage[3]);
     if (json)
         fprintf(json,
-                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, \"first_seconds\": %.4f, "
+                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
+                "\"first_seconds\": %.4f, "
                 "\"hewn_seconds\": %.4f, "
                 "\"sampling_seconds\": %.4f, "
                 "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"triangles\": %llu}",
-                first ? "" : ",", entry->name, resolution, result->listed ? "lists" : "straight", runs, result->first, ours, sampling, meshing, ratio,
-                (unsigned long long)result->hewn_triangles);
+                first ? "" : ",", entry->name, resolution, result->listed ? "lists" : "straight", runs, result->first,
+                ours, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles);
 }
 
 static bool wanted(const contest *entry, int argc, char **argv, int from)
@@ -214,8 +216,8 @@ int main(int argc, char **argv)
     printf(
         "device %s; dense sampling in C and VTK flying edges (%s) on %d threads; medians of %d runs in turn, seconds\n",
         hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
-    printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn", "sampling + VTK", "ratio", "triangles",
-           "VTK's");
+    printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn", "sampling + VTK",
+           "ratio", "triangles", "VTK's");
     if (json)
         fprintf(json, "[");
     bool first = true;

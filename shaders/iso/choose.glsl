@@ -1,7 +1,6 @@
 /* Tests blocks by interval arithmetic over their parents' lists, and counts what of a list a block will keep: one
  * invocation a block. */
 #include "iso/grid.h"
-#include "shared/lists.h"
 #include "iso/choices.h"
 
 layout(local_size_x = 64) in;

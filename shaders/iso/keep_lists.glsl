@@ -1,5 +1,4 @@
 /* Writes the list of each block that a level of culling kept: one invocation a block. */
-#include "shared/lists.h"
 #include "iso/choices.h"
 
 layout(local_size_x = 64) in;

@@ -1,7 +1,6 @@
 /* As vertices.glsl, with the same arithmetic for each vertex, for fields in lists: an invocation solves four vertices of
  * a brick at once, so that one walk over its list serves them all. */
 #include "iso/grid.h"
-#include "shared/lists.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push

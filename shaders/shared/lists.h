@@ -24,9 +24,9 @@ struct hewn_gather_push {
     HEWN_UINT dense[3];
     HEWN_UINT tested;
     HEWN_UINTS parents;
-    HEWN_UINTS states; /* out: the block's place in the list where it is kept */
-    HEWN_UINTS ranks;  /* the flags, summed */
-    HEWN_UINTS kept;   /* out: packed coordinates */
+    HEWN_UINTS states;  /* out: the block's place in the list where it is kept */
+    HEWN_UINTS ranks;   /* the flags, summed */
+    HEWN_UINTS kept;    /* out: packed coordinates */
     HEWN_UINTS origins; /* out, a kept block: its number among those tested */
 };
 

@@ -14,8 +14,8 @@ typedef enum hewn_flavour {
                                   field_point computes for arguments in there; [-inf, inf] where NaN is possible */
     HEWN_FLAVOUR_GRADIENT = 4, /* vec4 field_gradient(float x, float y, float z): (d/dx, d/dy, d/dz, value), value with
                                   field_point's bits */
-    HEWN_FLAVOUR_WORD = 16, /* uint field_word_inside(uint i, vec4 y, float z): the bits of four such rows, the first
-                               row's lowest */
+    HEWN_FLAVOUR_WORD = 16,    /* uint field_word_inside(uint i, vec4 y, float z): the bits of four such rows, the first
+                                  row's lowest */
     HEWN_FLAVOUR_CHOICES = 32, /* in listed code: see eval/lists.h */
     HEWN_FLAVOUR_FOUR = 64,    /* in listed code: values and gradients of four points at once */
     HEWN_FLAVOUR_TOGETHER = 128, /* all invocations of a subgroup, none of which has left, evaluate the same list at

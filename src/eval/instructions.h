@@ -13,11 +13,11 @@ enum {
     HEWN_COMBINATIONS_MAX = 15,
     HEWN_SLOTS_MAX = 15,
     HEWN_NO_SLOT = 15,
-    HEWN_TOGETHER_MOST = 8, /* invocations that read an instruction together; its length is a multiple */
-    HEWN_BODY_STEPS = 16,   /* of one body */
-    HEWN_BODY_INPUTS = 3,   /* slots that a body reads */
-    HEWN_BODY_NUMBERS = 21, /* of one body */
-    HEWN_SLOPE_NUMBERS = 3, /* of these, for shapes in frames */
+    HEWN_TOGETHER_MOST = 8,       /* invocations that read an instruction together; its length is a multiple */
+    HEWN_BODY_STEPS = 16,         /* of one body */
+    HEWN_BODY_INPUTS = 3,         /* slots that a body reads */
+    HEWN_BODY_NUMBERS = 21,       /* of one body */
+    HEWN_SLOPE_NUMBERS = 3,       /* of these, for shapes in frames */
     HEWN_INSTRUCTIONS_MAX = 30000 /* an invocation walks over all of them twice; CPU drivers bound its iterations */
 };
 

@@ -11,8 +11,8 @@ typedef struct walk {
     const hewn_walking *how;
     const char *type; /* of values */
     const char *bools;
-    int flavour;       /* 0 point, 1 interval, 2 gradient */
-    unsigned values;   /* at once: 1, 4 points, or 32 in four rows of eight */
+    int flavour;     /* 0 point, 1 interval, 2 gradient */
+    unsigned values; /* at once: 1, 4 points, or 32 in four rows of eight */
     bool chooses;
     bool repeated; /* walked again and again: what subgroups read together they keep */
     hewn_text *text;

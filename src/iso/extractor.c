@@ -7,8 +7,8 @@
 #include "iso/marching_cubes.h"
 #include "shared/lists.h"
 
-extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_vertices[],
-    hewn_text_choose[], hewn_text_keep_lists[], hewn_text_vertices_listed[];
+extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_vertices[], hewn_text_choose[],
+    hewn_text_keep_lists[], hewn_text_vertices_listed[];
 
 #define HEWN_SHADER(name)                                                                                              \
     extern const unsigned char hewn_shader_##name[];                                                                   \
@@ -32,13 +32,15 @@ static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *
         {{"cull", hewn_text_iso_head, hewn_text_cull, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_cull_push)},
          &extractor->cull,
          1},
-        {{"choose", hewn_text_iso_head, hewn_text_choose, HEWN_FLAVOUR_CHOICES | HEWN_FLAVOUR_TOGETHER, sizeof(struct hewn_choose_push)},
+        {{"choose", hewn_text_iso_head, hewn_text_choose, HEWN_FLAVOUR_CHOICES | HEWN_FLAVOUR_TOGETHER,
+          sizeof(struct hewn_choose_push)},
          &extractor->choose,
          2},
         {{"keep_lists", hewn_text_iso_head, hewn_text_keep_lists, HEWN_FLAVOUR_CHOICES, sizeof(struct hewn_keep_push)},
          &extractor->keep_lists,
          2},
-        {{"signs", hewn_text_iso_head, hewn_text_signs, HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_TOGETHER, sizeof(struct hewn_sign_push)},
+        {{"signs", hewn_text_iso_head, hewn_text_signs, HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_TOGETHER,
+          sizeof(struct hewn_sign_push)},
          &extractor->signs,
          0},
         {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT,
@@ -150,9 +152,10 @@ void hewn_extractor_destroy(hewn_extractor **extractor_place)
     if (!extractor)
         return;
     hewn_device *device = extractor->device;
-    hewn_program **programs[] = {&extractor->cull, &extractor->signs,    &extractor->vertices, &extractor->compact,
-                                 &extractor->link, &extractor->classify, &extractor->spread,   &extractor->triangles,
-                                 &extractor->choose, &extractor->keep_lists, &extractor->gather};
+    hewn_program **programs[] = {&extractor->cull,       &extractor->signs,     &extractor->vertices,
+                                 &extractor->compact,    &extractor->link,      &extractor->classify,
+                                 &extractor->spread,     &extractor->triangles, &extractor->choose,
+                                 &extractor->keep_lists, &extractor->gather};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         hewn_program_destroy(device, programs[i]);
     hewn_mc33_clear(extractor);

@@ -139,8 +139,7 @@ static uint64_t count_crossings(hewn_extractor *extractor, uint32_t resolution)
         size_t at[3] = {i % side[0], i / side[0] % side[1], i / side[0] / side[1]};
         for (int axis = 0; axis < 3; axis++) {
             float offset = grid.cell * (float)at[axis];
-            points[3 * i + (size_t)axis] =
-                at[axis] == grid.cells[axis] ? grid.far[axis] : grid.origin[axis] + offset;
+            points[3 * i + (size_t)axis] = at[axis] == grid.cells[axis] ? grid.far[axis] : grid.origin[axis] + offset;
         }
     }
     GPU_TEST_TRY(hewn_code_eval_points(extractor->device, extractor->code, points, count, values, &error));
@@ -259,12 +258,13 @@ static void odd_fields_are_straight_code(void **state)
         switch (which) {
         case 0: made.root = hewn_max(f, hewn_sub(f, hewn_abs(f, wave), hewn_constant(f, 0.3)), ball); break;
         case 1: /* a shape whose coordinates all come from slots */
-            made.root = hewn_min(f, hewn_remap(f, hewn_box_shape(f, 0.5, 0.6, 0.7), bent, hewn_max(f, x, bent),
-                                               hewn_min(f, wave, z)),
-                                 hewn_max(f, ball, x));
+            made.root = hewn_min(
+                f, hewn_remap(f, hewn_box_shape(f, 0.5, 0.6, 0.7), bent, hewn_max(f, x, bent), hewn_min(f, wave, z)),
+                hewn_max(f, ball, x));
             break;
         case 2: /* the root of what is negative in places */
-            made.root = hewn_min(f, hewn_sub(f, hewn_sqrt(f, x), hewn_constant(f, 0.5)), hewn_max(f, ball, hewn_ln(f, y)));
+            made.root =
+                hewn_min(f, hewn_sub(f, hewn_sqrt(f, x), hewn_constant(f, 0.5)), hewn_max(f, ball, hewn_ln(f, y)));
             break;
         default: /* a value used thrice, once beneath what drops it */
             made.root = hewn_max(f, hewn_min(f, bent, hewn_add(f, ball, bent)),
