@@ -20,7 +20,7 @@ uint block_state(uvec3 block, uint first_choice)
     vec2 sides[3];
     for (uint axis = 0u; axis < 3u; axis++)
         sides[axis] = vec2(sample_coordinate(push.grid, axis, first[axis]), sample_coordinate(push.grid, axis, last[axis]));
-    vec2 range = field_choose(sides[0], sides[1], sides[2], hewn_words(push.choices), first_choice);
+    vec2 range = field_choose(sides[0], sides[1], sides[2], hewn_words(uvec2(push.choices)), first_choice);
     if (beyond || range.x >= 0.0)
         return HEWN_ALL_OUTSIDE;
     bool at_bounds = any(equal(first, uvec3(0u))) || any(equal(last, cells));
@@ -42,6 +42,6 @@ void main()
     push.flags.at[at] = state == 0u ? 1u : 0u;
     uint kept = 0u;
     if (state == 0u)
-        kept = field_keep(hewn_words(push.choices), first_choice, false, hewn_words(push.choices), 0u);
+        kept = field_keep(hewn_words(uvec2(push.choices)), first_choice, false, hewn_words(uvec2(push.choices)), 0u);
     push.lengths.at[at] = kept;
 }

@@ -17,5 +17,5 @@ void main()
     uint begin = push.places.at[at], end = push.places.at[at + 1u];
     push.ranges.at[2u * rank] = begin;
     push.ranges.at[2u * rank + 1u] = end - begin;
-    field_keep(hewn_words(push.choices), first_choice, true, hewn_words(push.lists), end);
+    field_keep(hewn_words(uvec2(push.choices)), first_choice, true, hewn_words(uvec2(push.lists)), end);
 }
