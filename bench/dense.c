@@ -70,3 +70,66 @@ void dense_sample(const dense_field *field, size_t samples, float *values)
             field->row(field->lo, step, samples, field->lo + step * (float)j, field->lo + step * (float)k,
                        values + (k * samples + j) * samples);
 }
+
+/* --- shapes melted together -------------------------------------------------------------------------------------- */
+
+/* How far a shape is from a row of points: local coordinates are a start and a step for each point. */
+static inline float ball(float a, float b, float c, const float *size)
+{
+    return sqrtf(a * a + b * b + c * c) - size[0];
+}
+
+static inline float box(float a, float b, float c, const float *size)
+{
+    float x = fabsf(a) - size[0], y = fabsf(b) - size[1], z = fabsf(c) - size[2];
+    float p = fmaxf(x, 0), q = fmaxf(y, 0), r = fmaxf(z, 0);
+    return sqrtf(p * p + q * q + r * r) + fminf(fmaxf(fmaxf(x, y), z), 0);
+}
+
+static inline float ring(float a, float b, float c, const float *size)
+{
+    float around = sqrtf(a * a + c * c) - size[0];
+    return sqrtf(around * around + b * b) - size[1];
+}
+
+static inline float melted(float a, float b, float size)
+{
+    float h = fmaxf(size - fabsf(a - b), 0);
+    return fminf(a, b) - 0.25f * h * h / size;
+}
+
+#define HEAP_LOOP(FUNCTION)                                                                                            \
+    for (int i = 0; i < (int)count; i++) {                                                                             \
+        float t = (float)i;                                                                                            \
+        float d = FUNCTION(at[0] + step[0] * t, at[1] + step[1] * t, at[2] + step[2] * t, shape->size);                \
+        values[i] = melted(values[i], d, shape->melt);                                                                 \
+    }
+
+static void melt_row(const dense_shape *shape, float x0, float pitch, size_t count, float y, float z, float *values)
+{
+    float at[3], step[3];
+    for (int k = 0; k < 3; k++) {
+        const float *f = shape->frame[k];
+        at[k] = f[0] * x0 + f[1] * y + f[2] * z + f[3];
+        step[k] = f[0] * pitch;
+    }
+    switch (shape->kind) {
+    case DENSE_BALL: HEAP_LOOP(ball) break;
+    case DENSE_BOX: HEAP_LOOP(box) break;
+    default: HEAP_LOOP(ring)
+    }
+}
+
+void dense_sample_heap(const dense_shape *shapes, size_t count, float lo, float hi, size_t samples, float *values)
+{
+    float step = (hi - lo) / (float)(samples - 1);
+#pragma omp parallel for schedule(static)
+    for (size_t k = 0; k < samples; k++)
+        for (size_t j = 0; j < samples; j++) {
+            float *row = values + (k * samples + j) * samples;
+            for (size_t i = 0; i < samples; i++)
+                row[i] = 1e18f;
+            for (size_t s = 0; s < count; s++)
+                melt_row(&shapes[s], lo, step, samples, lo + step * (float)j, lo + step * (float)k, row);
+        }
+}

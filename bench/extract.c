@@ -1,5 +1,6 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process. usage: extract [--runs N] [--res N] [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger. */
+ * process. usage: extract [--runs N] [--res N] [--peers 0] [--as listed|straight] [--json FILE] [SCENE ...], SCENE one
+ * of csg, gyroid, menger, random, random100, random10000. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,10 +9,12 @@
 
 #include "dense.h"
 #include "flying_edges.h"
+#include "heap.h"
 #include "hewn/hewn.h"
 #include "samples.h"
 
 #include "base/clock.h"
+#include "iso/extractor.h"
 
 #define THREADS 2
 
@@ -20,23 +23,39 @@ typedef struct contest {
     const char *file;
     const hewn_scene_setting *settings;
     size_t setting_count;
-    const dense_field *dense;
+    const dense_field *dense; /* NULL: a heap of shapes */
+    uint32_t resolution;      /* where none is asked for */
+    bool alone;               /* peers would take minutes */
 } contest;
 
 static const hewn_scene_setting level_four[] = {{"L", 4}};
+static const hewn_scene_setting hundred[] = {{"n", 100}}, thousand[] = {{"n", 1000}}, myriad[] = {{"n", 10000}},
+                                few[] = {{"n", 25}}, some[] = {{"n", 50}};
 
 static const contest contests[] = {
-    {"csg", "csg.lua", NULL, 0, &dense_csg},
-    {"gyroid", "gyroid.lua", NULL, 0, &dense_gyroid},
-    {"menger", "menger.lua", level_four, 1, &dense_menger4},
+    {"csg", "csg.lua", NULL, 0, &dense_csg, 512, false},
+    {"gyroid", "gyroid.lua", NULL, 0, &dense_gyroid, 512, false},
+    {"menger", "menger.lua", level_four, 1, &dense_menger4, 512, false},
+    {"random", "random.lua", thousand, 1, NULL, 256, false},
+    {"random100", "random.lua", hundred, 1, NULL, 256, false},
+    {"random25", "random.lua", few, 1, NULL, 256, false},
+    {"random50", "random.lua", some, 1, NULL, 256, false},
+    {"random10000", "random.lua", myriad, 1, NULL, 256, true},
 };
 
 typedef struct outcome {
     double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];
     double dual[MOST_RUNS]; /* Hewn by dual contouring, which peers here do not have */
     double stage[4];
+    double first; /* compiling and the first run */
+    bool listed;
     uint64_t hewn_triangles, peer_triangles;
 } outcome;
+
+typedef struct manner {
+    hewn_evaluation evaluation;
+    bool peers;
+} manner;
 
 static void stop_on(hewn_result result, const hewn_error *error)
 {
@@ -67,20 +86,31 @@ static void run_hewn(hewn_extractor *extractor, const hewn_box *bounds, uint32_t
     hewn_triangles_destroy(&triangles);
 }
 
-static void run_peers(const dense_field *field, uint32_t resolution, float *values, double *sampling, double *meshing,
+/* What the peers mesh: one of two ways to fill a cube with values. */
+typedef struct peer {
+    const dense_field *field;
+    const dense_shape *heap;
+    size_t heap_count;
+    float lo, hi;
+} peer;
+
+static void run_peers(const peer *subject, uint32_t resolution, float *values, double *sampling, double *meshing,
                       outcome *out)
 {
     size_t samples = (size_t)resolution + 1;
     double begin = hewn_clock_now();
-    dense_sample(field, samples, values);
+    if (subject->field)
+        dense_sample(subject->field, samples, values);
+    else
+        dense_sample_heap(subject->heap, subject->heap_count, subject->lo, subject->hi, samples, values);
     *sampling = hewn_clock_now() - begin;
     uint64_t vertices;
-    double step = (double)(field->hi - field->lo) / resolution;
-    *meshing = flying_edges_run(values, samples, (double)field->lo, step, THREADS, &vertices, &out->peer_triangles);
+    double step = (double)(subject->hi - subject->lo) / resolution;
+    *meshing = flying_edges_run(values, samples, (double)subject->lo, step, THREADS, &vertices, &out->peer_triangles);
 }
 
 static void run_contest(hewn_device *device, const contest *entry, const char *folder, uint32_t resolution, int runs,
-                        outcome *out)
+                        const manner *how, outcome *out)
 {
     char path[4096];
     hewn_error error = {0};
@@ -93,22 +123,36 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
     if (!hewn_scene_bounds(scene, &bounds))
         stop_on(hewn_field_find_box(hewn_scene_field(scene), hewn_field_root(hewn_scene_field(scene)), &bounds, &error),
                 &error);
-    stop_on(hewn_extractor_create(device, hewn_scene_field(scene), hewn_field_root(hewn_scene_field(scene)), &extractor,
-                                  &error),
+    double compile = hewn_clock_now();
+    stop_on(hewn_extractor_create_as(device, hewn_scene_field(scene), hewn_field_root(hewn_scene_field(scene)),
+                                     &(hewn_code_desc){.evaluation = how->evaluation}, &extractor, &error),
             &error);
+    out->listed = hewn_code_is_listed(extractor->code);
     size_t samples = (size_t)resolution + 1;
     float *values = malloc(samples * samples * samples * sizeof *values);
     if (!values)
         exit(1);
+    peer subject = {.field = entry->dense, .lo = (float)bounds.lo[0], .hi = (float)bounds.hi[0]};
+    if (entry->dense) {
+        subject.lo = entry->dense->lo;
+        subject.hi = entry->dense->hi;
+    } else {
+        subject.heap = heap_read(hewn_scene_field(scene), &subject.heap_count);
+    }
+    bool peers = how->peers && !entry->alone && (subject.field || subject.heap);
     double unused[2];
     run_hewn(extractor, &bounds, resolution, HEWN_METHOD_MARCHING_CUBES, unused, out);
+    out->first = hewn_clock_now() - compile;
     run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, unused, out);
-    run_peers(entry->dense, resolution, values, unused, unused + 1, out);
+    if (peers && entry->dense)
+        run_peers(&subject, resolution, values, unused, unused + 1, out);
     for (int i = 0; i < runs; i++) {
         run_hewn(extractor, &bounds, resolution, HEWN_METHOD_MARCHING_CUBES, &out->hewn[i], out);
-        run_peers(entry->dense, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
+        if (peers)
+            run_peers(&subject, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
         run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, &out->dual[i], out);
     }
+    free((void *)subject.heap);
     free(values);
     hewn_extractor_destroy(&extractor);
     hewn_scene_destroy(&scene);
@@ -128,20 +172,19 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
     double ours = bench_median(result->hewn, runs), sampling = bench_median(result->sampling, runs);
     double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
     double dual = bench_median(result->dual, runs);
-    printf("%-8s %5u  %8.3f  %8.3f + %-7.3f  %5.2fx   dc %8.3f   %9llu %9llu   cull %.3f, evaluate %.3f, extract %.3f, "
-           "read back "
-           "%.3f\n",
-           entry->name, resolution, ours, sampling, meshing, ratio, dual, (unsigned long long)result->hewn_triangles,
-           (unsigned long long)result->peer_triangles, result->stage[0], result->stage[1], result->stage[2],
-           result->stage[3]);
+    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   dc %8.3f   %9llu %9llu   cull %.3f, evaluate %.3f, "
+           "extract %.3f, read back %.3f\n",
+           entry->name, resolution, result->listed ? "lists" : "straight", result->first, ours, sampling, meshing,
+           ratio, dual, (unsigned long long)result->hewn_triangles, (unsigned long long)result->peer_triangles,
+           result->stage[0], result->stage[1], result->stage[2], result->stage[3]);
     if (json)
         fprintf(json,
-                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"runs\": %d, \"hewn_seconds\": %.4f, "
-                "\"hewn_dc_seconds\": %.4f, "
+                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
+                "\"first_seconds\": %.4f, \"hewn_seconds\": %.4f, \"hewn_dc_seconds\": %.4f, "
                 "\"sampling_seconds\": %.4f, "
                 "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"triangles\": %llu}",
-                first ? "" : ",", entry->name, resolution, runs, ours, dual, sampling, meshing, ratio,
-                (unsigned long long)result->hewn_triangles);
+                first ? "" : ",", entry->name, resolution, result->listed ? "lists" : "straight", runs, result->first,
+                ours, dual, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles);
 }
 
 static bool wanted(const contest *entry, int argc, char **argv, int from)
@@ -156,13 +199,20 @@ int main(int argc, char **argv)
 {
     const char *folder = getenv("HEWN_SCENES");
     int runs = 5, at = 1;
-    uint32_t resolution = 512;
+    uint32_t wanted_resolution = 0;
+    manner how = {HEWN_EVALUATION_AUTO, true};
     FILE *json = NULL;
     for (; at + 1 < argc && strncmp(argv[at], "--", 2) == 0; at += 2) {
         if (strcmp(argv[at], "--runs") == 0)
             runs = atoi(argv[at + 1]);
         else if (strcmp(argv[at], "--res") == 0)
-            resolution = (uint32_t)atoi(argv[at + 1]);
+            wanted_resolution = (uint32_t)atoi(argv[at + 1]);
+        else if (strcmp(argv[at], "--peers") == 0)
+            how.peers = atoi(argv[at + 1]) != 0;
+        else if (strcmp(argv[at], "--as") == 0)
+            how.evaluation = strcmp(argv[at + 1], "listed") == 0     ? HEWN_EVALUATION_LISTED
+                             : strcmp(argv[at + 1], "straight") == 0 ? HEWN_EVALUATION_STRAIGHT
+                                                                     : HEWN_EVALUATION_AUTO;
         else if (strcmp(argv[at], "--json") == 0)
             json = fopen(argv[at + 1], "w");
     }
@@ -173,8 +223,8 @@ int main(int argc, char **argv)
     printf(
         "device %s; dense sampling in C and VTK flying edges (%s) on %d threads; medians of %d runs in turn, seconds\n",
         hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
-    printf("%-8s %5s  %8s  %18s  %6s   %11s   %9s %9s\n", "scene", "cells", "Hewn mc", "sampling + VTK", "ratio",
-           "Hewn dc", "triangles", "VTK's");
+    printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %11s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn mc",
+           "sampling + VTK", "ratio", "Hewn dc", "triangles", "VTK's");
     if (json)
         fprintf(json, "[");
     bool first = true;
@@ -182,7 +232,8 @@ int main(int argc, char **argv)
         if (!wanted(&contests[i], argc, argv, at))
             continue;
         outcome result = {0};
-        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, &result);
+        uint32_t resolution = wanted_resolution ? wanted_resolution : contests[i].resolution;
+        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, &how, &result);
         print_outcome(json, &contests[i], resolution, &result, runs, first);
         first = false;
         fflush(stdout);

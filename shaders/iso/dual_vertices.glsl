@@ -124,7 +124,7 @@ uint react(inout Search search, Cell cell, Qef solved, uint questions)
 
 /* Loops that share a cell are not asked for planes that no crossing saw, or two would come to one corner; and where they are
  * not on the surface they stay at the mean of their crossings, or they would get in each other's way. */
-Search place_vertex(Cell cell, bool alone, vec3 usual)
+Search place_vertex(uint slot, Cell cell, bool alone, vec3 usual)
 {
     bool shared_cell = !alone;
     Search search = Search(SOLVE, qef_count, 0u, 0u, uvec3(0u), vec3(0.0), vec3(0.0), alone, vec3(0.0),
@@ -139,8 +139,12 @@ Search place_vertex(Cell cell, bool alone, vec3 usual)
             asked[0] = solved.at;
         }
         uint questions = ask(search, cell, solved);
-        for (uint i = 0u; i < questions; i++)
+        for (uint i = 0u; i < questions; i++) {
+            /* A brick's own part of the field is all that matters in the brick, and only there. */
+            bool within = asked[i] == clamp(asked[i], 0.0, 1.0);
+            field_select(within ? slot : FIELD_WHOLE);
             told[i] = surface_from(out_of_cell(cell, asked[i]));
+        }
         bool settled = search.phase == SHARP;
         uint next = react(search, cell, solved, questions);
         if (next == SHARP)
@@ -178,7 +182,7 @@ void main()
         along += normal;
         count += 1.0;
     }
-    Search placed = place_vertex(cell, record.loops == 1u, along / max(length(along), 1.0e-6));
+    Search placed = place_vertex(record.slot, cell, record.loops == 1u, along / max(length(along), 1.0e-6));
     vec3 place = out_of_cell(cell, placed.at);
     write_vertex(vertex, place, vertex_normal(placed.seen, along, count));
     count_vertex(placed.seen.w, capped);

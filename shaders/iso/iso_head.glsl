@@ -4,6 +4,7 @@
 /* What comes before the field in kernels that are completed at run time. */
 #include "iso/block.h"
 #include "shared/invocation.h"
+#include "shared/lists.h"
 
 /* For kernels that ask the field about rows of samples: where sample i of the row is. */
 float sample_x(uint i);

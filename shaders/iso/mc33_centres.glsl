@@ -24,6 +24,7 @@ void main()
     uint vertex = push.first + at;
     uint slot = floatBitsToUint(push.positions.at[3u * vertex]);
     uint record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
+    field_select(slot);
     uvec3 sample_at = uvec3(record, record >> 3, record >> 6) & 7u;
     uint face = record >> 21;
     /* Sums of what crossings are off the first of them keep the digits that matter. */

@@ -86,6 +86,7 @@ void main()
         return;
     uint slot = push.asked.at[2u * at], record = push.asked.at[2u * at + 1u];
     uint pattern = record >> 9;
+    field_select(slot);
     uvec3 first = 8u * unpack_brick(push.bricks.at[slot]) + (uvec3(record, record >> 3, record >> 6) & 7u);
     float values[8];
     for (uint i = 0u; i < 8u; i++)

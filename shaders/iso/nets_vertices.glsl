@@ -30,6 +30,7 @@ void main()
         count += 1.0;
     }
     vec3 place = out_of_cell(cell, clamp(sum / count, cell.lo, cell.hi));
+    field_select(record.slot);
     vec4 seen = surface_from(place);
     write_vertex(vertex, place, vertex_normal(seen, along, count));
     count_vertex(seen.w, capped);

@@ -25,20 +25,22 @@ uint counting(uint axis, uint first)
 
 void main()
 {
-    uint at = invocation();
-    if (at >= push.count * HEWN_BRICK_WORDS)
-        return;
+    /* Nobody leaves before the field is evaluated: subgroups may do that together. */
+    uint own = invocation(), at = min(own, push.count * HEWN_BRICK_WORDS - 1u);
     uvec3 first = 8u * unpack_brick(push.bricks.at[at / HEWN_BRICK_WORDS]);
     uint word = at % HEWN_BRICK_WORDS;
     uint layer = word >> 1, row = 4u * (word & 1u);
     uint columns = counting(0u, first.x), rows = counting(1u, first.y) >> row;
     bool layer_counts = (counting(2u, first.z) >> layer & 1u) != 0u;
     float z = sample_coordinate(push.grid, 2u, first.z + layer);
-    uint bits = 0u;
+    vec4 y;
+    uint counts = 0u;
     for (uint i = 0u; i < 4u; i++) {
-        float y = sample_coordinate(push.grid, 1u, first.y + row + i);
-        uint inside = field_row_inside(first.x, y, z) & columns;
-        bits |= layer_counts && (rows >> i & 1u) != 0u ? inside << 8u * i : 0u;
+        y[i] = sample_coordinate(push.grid, 1u, first.y + row + i);
+        counts |= layer_counts && (rows >> i & 1u) != 0u ? columns << 8u * i : 0u;
     }
-    push.signs.at[at] = bits;
+    field_select(at / HEWN_BRICK_WORDS);
+    uint inside = field_word_inside(first.x, y, z) & counts;
+    if (own == at)
+        push.signs.at[at] = inside;
 }

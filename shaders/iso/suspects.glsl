@@ -134,6 +134,7 @@ void main()
     uint undefined = 0u, asked = 0u;
     uint slot = block >> 3;
     uvec3 corner = 4u * (uvec3(block, block >> 1, block >> 2) & 1u);
+    field_select(slot);
     uvec3 first = 8u * unpack_brick(push.bricks.at[slot]) + corner;
     uvec3 cells = uvec3(push.grid.cells[0], push.grid.cells[1], push.grid.cells[2]);
     uvec3 room = max(cells - push.grid.rim, first) - first;

@@ -73,6 +73,7 @@ void main()
     uint slot = floatBitsToUint(push.positions.at[3u * vertex]);
     uint record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
     uint axis = record >> 9;
+    field_select(slot);
     uvec3 first = 8u * unpack_brick(push.bricks.at[slot]) + (uvec3(record, record >> 3, record >> 6) & 7u);
     vec3 start;
     for (uint i = 0u; i < 3u; i++)

@@ -7,6 +7,8 @@
 #include "eval/internal.h"
 #include "gpu/device.h"
 
+extern const char hewn_text_keep[];
+
 /* --- parameters -------------------------------------------------------------------------------------------------- */
 
 /* Every device lets a workgroup share this much memory (Vulkan's least maxComputeSharedMemorySize). */
@@ -51,8 +53,36 @@ static hewn_result create_filled(hewn_device *device, uint64_t bytes, const void
     return HEWN_OK;
 }
 
+static size_t instruction_bytes(const hewn_instructions *instructions)
+{
+    return (size_t)instructions->count * instructions->set.words * sizeof(uint32_t);
+}
+
+/* Invocations that read an instruction together: as many as a subgroup of a CPU device has. GPUs have subgroups that
+ * may not be full, and read what all want once anyway. */
+static uint32_t invocations_together(const hewn_device *device)
+{
+    uint32_t size = device->subgroup_size;
+    bool divides = size == 2 || size == 4 || size == HEWN_TOGETHER_MOST;
+    return device->info.kind == HEWN_DEVICE_CPU && divides ? size : 0;
+}
+
+static hewn_result write_instructions(hewn_device *device, hewn_code *code, hewn_error *error)
+{
+    const hewn_instructions *list = &code->instructions;
+    size_t bytes = instruction_bytes(list);
+    code->walking = (hewn_walking){.masked = device->info.kind == HEWN_DEVICE_CPU,
+                                   .whole = code->walking.whole,
+                                   .together = invocations_together(device)};
+    HEWN_TRY(create_filled(device, bytes + HEWN_LIST_SLACK, list->words, bytes, &code->parameters, error));
+    const hewn_list_block block = {.whole = code->parameters.address, .whole_count = list->count};
+    return create_filled(device, sizeof block, &block, sizeof block, &code->uniforms, error);
+}
+
 static hewn_result write_parameters(hewn_device *device, hewn_code *code, hewn_error *error)
 {
+    if (code->listed)
+        return write_instructions(device, code, error);
     const hewn_listing *listing = &code->listing;
     size_t length = code->place == HEWN_PLACE_CODE ? 0 : listing->parameter_count * sizeof(float);
     uint64_t bytes = code->place == HEWN_PLACE_CODE ? 16 : parameter_bytes(listing);
@@ -129,8 +159,37 @@ static hewn_result choose_blocks(hewn_code *code, hewn_error *error)
     return HEWN_OK;
 }
 
-hewn_result hewn_code_create_with(hewn_device *device, const hewn_field *field, hewn_node root, hewn_numbers numbers,
-                                  hewn_code **out, hewn_error *error)
+/* Lists pay where all of the field costs about this many times what one instruction of a list does, which on CPU
+ * devices is the sum of all its kinds and of reading it (docs/performance.md). */
+enum { LISTED_FROM = 12, READING = 60, A_SLOT = 6 };
+
+static bool lists_pay(const hewn_code *code)
+{
+    const hewn_instruction_set *set = &code->instructions.set;
+    uint64_t all = 0, one = READING + (uint64_t)A_SLOT * set->slots;
+    for (size_t i = 0; i < code->listing.count; i++)
+        all += hewn_listing_weight(&code->listing.steps[i]);
+    for (uint32_t i = 0; i < set->body_count; i++)
+        one += set->bodies[i].weight;
+    for (uint32_t i = 0; i < set->combination_count; i++)
+        one += set->combinations[i].weight;
+    return code->instructions.prunable * 3 >= code->instructions.count && all >= LISTED_FROM * one;
+}
+
+static hewn_result choose_evaluation(hewn_code *code, hewn_evaluation evaluation, hewn_error *error)
+{
+    if (evaluation == HEWN_EVALUATION_STRAIGHT)
+        return HEWN_OK;
+    HEWN_TRY(hewn_instructions_create(&code->instructions, &code->listing, NULL, &code->listed, error));
+    if (code->listed && evaluation == HEWN_EVALUATION_AUTO && !lists_pay(code)) {
+        hewn_instructions_destroy(&code->instructions);
+        code->listed = false;
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, hewn_node root,
+                                const hewn_code_desc *desc, hewn_code **out, hewn_error *error)
 {
     *out = NULL;
     hewn_code *code = hewn_alloc_zero(1, sizeof *code);
@@ -140,18 +199,27 @@ hewn_result hewn_code_create_with(hewn_device *device, const hewn_field *field, 
         hewn_free(code);
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a field's code");
     }
+    code->walking.whole = desc->whole;
     hewn_result result = hewn_listing_create(&code->listing, field, root, error);
     if (result == HEWN_OK) {
-        code->place = choose_place(device, &code->listing, numbers);
+        code->place = choose_place(device, &code->listing, desc->numbers);
         code->listing.fixed = code->place == HEWN_PLACE_CODE;
         result = choose_blocks(code, error);
     }
+    if (result == HEWN_OK)
+        result = choose_evaluation(code, desc->evaluation, error);
     if (result == HEWN_OK)
         result = write_parameters(device, code, error);
     if (result != HEWN_OK)
         hewn_code_destroy(device, &code);
     *out = code;
     return result;
+}
+
+hewn_result hewn_code_create_with(hewn_device *device, const hewn_field *field, hewn_node root, hewn_numbers numbers,
+                                  hewn_code **out, hewn_error *error)
+{
+    return hewn_code_create_as(device, field, root, &(hewn_code_desc){.numbers = numbers}, out, error);
 }
 
 hewn_result hewn_code_create(hewn_device *device, const hewn_field *field, hewn_node root, hewn_code **out,
@@ -167,6 +235,7 @@ void hewn_code_destroy(hewn_device *device, hewn_code **code)
     hewn_batches_destroy(device, (*code)->batches);
     hewn_buffer_destroy(device, &(*code)->parameters);
     hewn_buffer_destroy(device, &(*code)->uniforms);
+    hewn_instructions_destroy(&(*code)->instructions);
     hewn_listing_destroy(&(*code)->listing);
     hewn_free(*code);
     *code = NULL;
@@ -188,13 +257,37 @@ static hewn_result same_text(const hewn_listing *a, const hewn_listing *b, bool 
     return result;
 }
 
+/* Any field of the same kinds will do, as long as its instructions fit where the old ones are. */
+static hewn_result renumber_list(hewn_code *code, hewn_listing *listing, bool *taken, hewn_error *error)
+{
+    hewn_instructions made;
+    hewn_result result = hewn_instructions_create(&made, listing, &code->instructions.set, taken, error);
+    if (*taken && instruction_bytes(&made) + HEWN_LIST_SLACK > code->parameters.size) {
+        hewn_instructions_destroy(&made);
+        *taken = false;
+    }
+    if (!*taken) {
+        hewn_listing_destroy(listing);
+        return result;
+    }
+    memcpy(code->parameters.mapped, made.words, instruction_bytes(&made));
+    ((hewn_list_block *)code->uniforms.mapped)->whole_count = made.count;
+    hewn_instructions_destroy(&code->instructions);
+    hewn_listing_destroy(&code->listing);
+    code->instructions = made;
+    code->listing = *listing;
+    return HEWN_OK;
+}
+
 hewn_result hewn_code_renumber(hewn_code *code, const hewn_field *field, hewn_node root, bool *taken, hewn_error *error)
 {
     *taken = false;
-    if (code->place == HEWN_PLACE_CODE)
+    if (code->place == HEWN_PLACE_CODE && !code->listed)
         return HEWN_OK;
     hewn_listing listing;
     HEWN_TRY(hewn_listing_create(&listing, field, root, error));
+    if (code->listed)
+        return renumber_list(code, &listing, taken, error);
     bool same = false;
     hewn_result result = HEWN_OK;
     if (listing.parameter_count == code->listing.parameter_count)
@@ -215,26 +308,71 @@ const hewn_buffer *hewn_code_uniforms(const hewn_code *code)
     return &code->uniforms;
 }
 
+/* --- lists ------------------------------------------------------------------------------------------------------- */
+
+bool hewn_code_is_listed(const hewn_code *code)
+{
+    return code->listed;
+}
+
+uint32_t hewn_code_instruction_count(const hewn_code *code)
+{
+    return code->instructions.count;
+}
+
+uint32_t hewn_code_instruction_bytes(const hewn_code *code)
+{
+    return code->instructions.set.words * (uint32_t)sizeof(uint32_t);
+}
+
+void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_buffer *ranges)
+{
+    hewn_list_block *block = code->uniforms.mapped;
+    block->lists = lists->address;
+    block->ranges = ranges->address;
+}
+
 /* --- kernels ----------------------------------------------------------------------------------------------------- */
 
 static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, hewn_text *text)
 {
+    hewn_walking how = code->walking;
+    how.together = desc->flavours & HEWN_FLAVOUR_TOGETHER ? how.together : 0;
     /* An extension may only be asked for before anything is declared, so right after #version. */
     size_t version = strcspn(desc->head, "\n");
     version += desc->head[version] == '\n';
     hewn_text_append_bytes(text, desc->head, version);
-    if (code->place == HEWN_PLACE_ADDRESS)
+    if (code->listed)
+        hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n"
+                               "#extension GL_EXT_buffer_reference_uvec2 : require\n"
+                               "#extension GL_EXT_control_flow_attributes : require\n"
+                               "#extension GL_KHR_shader_subgroup_basic : enable\n"
+                               "#extension GL_KHR_shader_subgroup_vote : enable\n"
+                               "#extension GL_KHR_shader_subgroup_ballot : enable\n");
+    else if (code->place == HEWN_PLACE_ADDRESS)
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n");
     hewn_text_append(text, desc->head + version);
     hewn_text_append(text, "\n");
-    write_parameter_block(code, text);
+    if (code->listed) {
+        hewn_instruction_set_declare(&code->instructions.set, &how, text);
+    } else {
+        write_parameter_block(code, text);
+        hewn_text_append(text, "const uint FIELD_WHOLE = 0xFFFFFFFFu;\nvoid field_select(uint slot)\n{\n}\n");
+    }
     hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_POINT, text);
-    if (desc->flavours & HEWN_FLAVOUR_INTERVAL)
+    if (desc->flavours & (HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_CHOICES))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_INTERVAL, text);
-    if (desc->flavours & HEWN_FLAVOUR_GRADIENT)
+    if (desc->flavours & (HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_FOUR))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_GRADIENT, text);
-    hewn_listing_write(&code->listing, desc->flavours, text);
-    write_body(code, desc->body, text);
+    if (!code->listed) {
+        hewn_listing_write(&code->listing, desc->flavours, text);
+        write_body(code, desc->body, text);
+        return;
+    }
+    if (desc->flavours & HEWN_FLAVOUR_CHOICES)
+        hewn_text_append(text, hewn_text_keep);
+    hewn_instruction_set_write(&code->instructions.set, &how, desc->flavours, text);
+    hewn_text_append(text, desc->body);
 }
 
 hewn_result hewn_code_program(hewn_device *device, const hewn_code *code, const hewn_kernel_desc *desc,

@@ -14,6 +14,12 @@ typedef enum hewn_flavour {
                                   field_point computes for arguments in there; [-inf, inf] where NaN is possible */
     HEWN_FLAVOUR_GRADIENT = 4, /* vec4 field_gradient(float x, float y, float z): (d/dx, d/dy, d/dz, value), value with
                                   field_point's bits */
+    HEWN_FLAVOUR_WORD = 16,    /* uint field_word_inside(uint i, vec4 y, float z): the bits of four such rows, the first
+                                  row's lowest */
+    HEWN_FLAVOUR_CHOICES = 32, /* in listed code: see eval/lists.h */
+    HEWN_FLAVOUR_FOUR = 64,    /* in listed code: values and gradients of four points at once */
+    HEWN_FLAVOUR_TOGETHER = 128, /* all invocations of a subgroup, none of which has left, evaluate the same list at
+                                    the same time */
     HEWN_FLAVOUR_ROW = 8 /* uint field_row_inside(uint i, float y, float z): bit k set where field_point(sample_x(i +
                             k), y, z) < 0, k = 0..7. The kernel declares `float sample_x(uint i);` before the field's
                             code and defines it. What does not depend on x is evaluated once a row. */

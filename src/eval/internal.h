@@ -2,8 +2,9 @@
 #ifndef HEWN_SRC_EVAL_INTERNAL_H
 #define HEWN_SRC_EVAL_INTERNAL_H
 
+#include "eval/instructions.h"
 #include "eval/library.h"
-#include "eval/listing.h"
+#include "eval/lists.h"
 
 /* The kernels behind the batch functions, made when first asked for. */
 typedef struct hewn_batches {
@@ -18,8 +19,17 @@ typedef enum hewn_number_place {
     HEWN_PLACE_ADDRESS  /* more than uniforms hold: read through an address that is one */
 } hewn_number_place;
 
+/* The uniforms of listed code, as hewn_instruction_set_declare() has them. */
+typedef struct hewn_list_block {
+    uint64_t whole, lists, ranges;
+    uint32_t whole_count, pad;
+} hewn_list_block;
+
 struct hewn_code {
     hewn_listing listing;
+    bool listed;
+    hewn_walking walking;
+    hewn_instructions instructions; /* of listed code; `parameters` holds their words */
     hewn_number_place place;
     hewn_library library;
     hewn_library_choice choice;

@@ -86,8 +86,7 @@ static void put_parameters(hewn_listing *listing, hewn_code_step *step, const he
     }
 }
 
-/* Whether the operand is handed over as a bare number: a finite constant, to operations that have a form for it. */
-static bool is_plain(const hewn_listing *listing, const hewn_code_step *step, uint32_t i)
+bool hewn_listing_is_plain(const hewn_listing *listing, const hewn_code_step *step, uint32_t i)
 {
     const hewn_code_step *in = &listing->steps[step->in[i]];
     hewn_op op = step->op;
@@ -150,6 +149,40 @@ void hewn_listing_destroy(hewn_listing *listing)
     memset(listing, 0, sizeof *listing);
 }
 
+uint32_t hewn_listing_weight(const hewn_code_step *step)
+{
+    if (!step->function)
+        return 0;
+    switch (step->op) {
+    case HEWN_OP_SIN:
+    case HEWN_OP_COS:
+    case HEWN_OP_TAN:
+    case HEWN_OP_ASIN:
+    case HEWN_OP_ACOS:
+    case HEWN_OP_ATAN:
+    case HEWN_OP_ATAN2:
+    case HEWN_OP_EXP:
+    case HEWN_OP_LN:
+    case HEWN_OP_MOD: return 30;
+    case HEWN_OP_AFFINE:
+    case HEWN_OP_PLANE: return 2 * step->in_count;
+    case HEWN_OP_SQRT:
+    case HEWN_OP_DIV: return 6;
+    case HEWN_OP_SPHERE:
+    case HEWN_OP_CAPSULE: return 12;
+    case HEWN_OP_BOX:
+    case HEWN_OP_ROUNDED_BOX:
+    case HEWN_OP_TORUS:
+    case HEWN_OP_CYLINDER: return 22;
+    case HEWN_OP_CONE:
+    case HEWN_OP_BLEND_EXPONENTIAL: return 70;
+    case HEWN_OP_BLEND_QUADRATIC:
+    case HEWN_OP_BLEND_CUBIC:
+    case HEWN_OP_BLEND_CIRCULAR: return 16;
+    default: return 2;
+    }
+}
+
 /* --- text -------------------------------------------------------------------------------------------------------- */
 
 typedef enum listing_flavour { POINT, INTERVAL, GRADIENT } listing_flavour;
@@ -197,7 +230,7 @@ static bool guards_itself(hewn_op op)
            op == HEWN_OP_DIV || op == HEWN_OP_MOD;
 }
 
-static bool needs_guard(const hewn_listing *listing, const hewn_code_step *step)
+bool hewn_listing_needs_guard(const hewn_listing *listing, const hewn_code_step *step)
 {
     for (uint32_t i = 0; i < step->in_count; i++)
         if (!listing->steps[step->in[i]].sure)
@@ -211,7 +244,7 @@ static void write_operands(const hewn_listing *listing, const hewn_code_step *st
     for (uint32_t i = 0; i < step->in_count; i++) {
         if (i > 0)
             hewn_text_append_bytes(text, ",", 1);
-        write_operand(listing, step->in[i], flavour, !always_whole && is_plain(listing, step, i), text);
+        write_operand(listing, step->in[i], flavour, !always_whole && hewn_listing_is_plain(listing, step, i), text);
     }
 }
 
@@ -220,7 +253,7 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     const hewn_code_step *step = &listing->steps[at];
     if (!step->function)
         return;
-    bool guard = flavour == INTERVAL && needs_guard(listing, step);
+    bool guard = flavour == INTERVAL && hewn_listing_needs_guard(listing, step);
     hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", step->function);
     write_operands(listing, step, flavour, false, text);
     for (uint32_t i = 0; i < step->parameter_count; i++) {
@@ -294,6 +327,11 @@ void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_tex
                        "vec4 field_gradient(float at_x, float at_y, float at_z)\n{\n"
                        "vec4 x=vec4(1.0,0.0,0.0,at_x),y=vec4(0.0,1.0,0.0,at_y),z=vec4(0.0,0.0,1.0,at_z);\n",
                        text);
-    if (flavours & HEWN_FLAVOUR_ROW)
+    if (flavours & (HEWN_FLAVOUR_ROW | HEWN_FLAVOUR_WORD))
         write_row(listing, text);
+    if (flavours & HEWN_FLAVOUR_WORD)
+        hewn_text_append(text, "uint field_word_inside(uint i, vec4 y, float z)\n{\nuint bits = 0u;\n"
+                               "for (uint k = 0u; k < 4u; k++)\n"
+                               "bits |= field_row_inside(i, k == 0u ? y.x : k == 1u ? y.y : k == 2u ? y.z : y.w, z) << "
+                               "8u * k;\nreturn bits;\n}\n");
 }

@@ -40,6 +40,15 @@ void hewn_code_step_reach(const hewn_listing *listing, hewn_code_step *step);
 hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, hewn_error *error);
 void hewn_listing_destroy(hewn_listing *listing);
 
+/* Whether operand i is handed over as a bare number: a finite constant, to operations that have a form for it. */
+bool hewn_listing_is_plain(const hewn_listing *listing, const hewn_code_step *step, uint32_t i);
+
+/* Whether the step's interval, or an operand's, may not be finite, so that f_guard must look. */
+bool hewn_listing_needs_guard(const hewn_listing *listing, const hewn_code_step *step);
+
+/* About how many instructions of a processor the step takes at a point. */
+uint32_t hewn_listing_weight(const hewn_code_step *step);
+
 /* Appends the functions of `flavours`; the library must precede. Parameter i is P(i), or, where numbers are `fixed`, a
  * literal. */
 void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text);

@@ -105,11 +105,16 @@ static void find_queue(hewn_device *device)
 static void read_limits(hewn_device *device)
 {
     VkPhysicalDeviceIDProperties id = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES};
-    VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &id};
+    VkPhysicalDeviceSubgroupProperties subgroup = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
+                                                   .pNext = &id};
+    VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
     device->instance.vk.GetPhysicalDeviceProperties2(device->physical, &all);
     const VkPhysicalDeviceLimits *limits = &all.properties.limits;
     memcpy(device->max_group_count, limits->maxComputeWorkGroupCount, sizeof device->max_group_count);
     device->max_uniform_range = limits->maxUniformBufferRange;
+    const VkSubgroupFeatureFlags wanted = VK_SUBGROUP_FEATURE_VOTE_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
+    if ((subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) && (subgroup.supportedOperations & wanted) == wanted)
+        device->subgroup_size = subgroup.subgroupSize;
     device->timestamp_seconds = (double)limits->timestampPeriod * 1e-9;
     device->instance.vk.GetPhysicalDeviceMemoryProperties(device->physical, &device->memory);
     hewn_hash key = hewn_hash_begin();

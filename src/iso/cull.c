@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "eval/lists.h"
 #include "iso/extractor.h"
 
 /* A level fine enough to start with has at most this many blocks along an axis. */
@@ -32,20 +33,22 @@ static uint64_t blocks_at(const struct hewn_grid *grid, uint32_t shrink, uint32_
     return product;
 }
 
+uint32_t hewn_grid_levels(const struct hewn_grid *grid, uint32_t *levels, uint32_t top[3])
+{
+    uint32_t shrink = 1;
+    for (*levels = 1;; (*levels)++, shrink *= HEWN_LEVEL_RATIO) {
+        blocks_at(grid, shrink, top);
+        uint32_t most = top[0];
+        for (int axis = 1; axis < 3; axis++)
+            most = top[axis] > most ? top[axis] : most;
+        if (most <= TOP_BLOCKS || *levels == HEWN_MAX_LEVELS)
+            return 8 * shrink;
+    }
+}
+
 static void lay_levels(const struct hewn_grid *grid, cull_plan *plan)
 {
-    uint32_t shrink = 1, blocks[3];
-    plan->levels = 1;
-    for (;;) {
-        blocks_at(grid, shrink, plan->top);
-        uint32_t most = plan->top[0];
-        for (int axis = 1; axis < 3; axis++)
-            most = plan->top[axis] > most ? plan->top[axis] : most;
-        if (most <= TOP_BLOCKS || plan->levels == HEWN_MAX_LEVELS)
-            break;
-        shrink *= HEWN_LEVEL_RATIO;
-        plan->levels++;
-    }
+    uint32_t blocks[3], shrink = hewn_grid_levels(grid, &plan->levels, plan->top) / 8;
     for (uint32_t i = 0; i < plan->levels; i++, shrink /= HEWN_LEVEL_RATIO) {
         cull_level *level = &plan->level[i];
         level->size = 8 * shrink;
@@ -113,6 +116,8 @@ static void record_level(const hewn_extractor *extractor, const struct hewn_grid
 hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_grid *grid, hewn_workspace *workspace,
                              hewn_bricks *out, hewn_error *error)
 {
+    if (hewn_code_is_listed(extractor->code))
+        return hewn_bricks_cull_lists(extractor, grid, workspace, out, error);
     cull_plan plan = {0};
     lay_levels(grid, &plan);
     HEWN_TRY(take_buffers(&plan, workspace, error));

@@ -257,15 +257,13 @@ static void record_vertices(const emission *run, hewn_method method, hewn_comman
 {
     const hewn_surface *surface = run->surface;
     const hewn_buffer *uniforms = hewn_code_uniforms(run->extractor->code);
-    struct hewn_vertex_push crossings = {.grid = *run->grid,
-                                         .count = (uint32_t)surface->crossing_count,
-                                         .dual = 1,
-                                         .bricks = run->bricks->list->address,
-                                         .positions = run->points->address,
-                                         .normals = run->normals->address,
-                                         .summary = run->summary->address + (uint64_t)4 * HEWN_SUMMARY_WORDS};
-    hewn_commands_dispatch(commands, run->extractor->vertices, &crossings, uniforms,
-                           hewn_groups_for(surface->crossing_count, 64));
+    hewn_crossings crossings = {.count = surface->crossing_count,
+                                .dual = true,
+                                .bases = surface->crossing_bases,
+                                .positions = run->points,
+                                .normals = run->normals,
+                                .summary = run->summary->address + (uint64_t)4 * HEWN_SUMMARY_WORDS};
+    hewn_crossings_record(run->extractor, run->grid, run->bricks, &crossings, commands);
     struct hewn_dual_vertex_push vertices = {.grid = *run->grid,
                                              .count = (uint32_t)surface->vertex_count,
                                              .bricks = run->bricks->list->address,

@@ -4,7 +4,7 @@
 
 #include "hewn/extract.h"
 
-#include "eval/code.h"
+#include "eval/lists.h"
 #include "gpu/gpu.h"
 #include "iso/dual.h"
 #include "iso/grid.h"
@@ -32,6 +32,7 @@ struct hewn_extractor {
     hewn_scan *scan;
     hewn_buffer table;                                            /* hewn_mc_table */
     hewn_program *cull, *signs, *vertices;                        /* made of the field */
+    hewn_program *choose, *keep_lists, *gather;                   /* instead of `cull` where it is in lists */
     hewn_program *compact, *link, *classify, *spread, *triangles; /* the same for all */
     hewn_suspect_programs suspects;
     hewn_mc33_programs mc33;
@@ -42,8 +43,12 @@ struct hewn_extractor {
 hewn_result hewn_extractor_create_with(hewn_device *device, const hewn_field *field, hewn_node root,
                                        hewn_numbers numbers, hewn_extractor **out, hewn_error *error);
 
+/* As hewn_extractor_create(), with a say in how the field is evaluated. */
+hewn_result hewn_extractor_create_as(hewn_device *device, const hewn_field *field, hewn_node root,
+                                     const hewn_code_desc *desc, hewn_extractor **out, hewn_error *error);
+
 /* Buffers that one run needs, all freed together. */
-#define HEWN_WORKSPACE_MOST 48
+#define HEWN_WORKSPACE_MOST 96
 typedef struct hewn_workspace {
     hewn_device *device;
     hewn_buffer buffers[HEWN_WORKSPACE_MOST];
@@ -67,6 +72,14 @@ typedef struct hewn_bricks {
 /* Finds the bricks that may hold surface. */
 hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_grid *grid, hewn_workspace *workspace,
                              hewn_bricks *out, hewn_error *error);
+
+/* The same for a field in lists, of which `extractor->code` then has those of the bricks. */
+hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                   hewn_workspace *workspace, hewn_bricks *out, hewn_error *error);
+
+/* Levels of culling, blocks of the coarsest, and the cells along their sides. Bricks come in the order of their blocks,
+ * so that vertices do in every kind of culling. */
+uint32_t hewn_grid_levels(const struct hewn_grid *grid, uint32_t *levels, uint32_t top[3]);
 
 /* The surface in those bricks, as counts and ranks on the device. */
 typedef struct hewn_surface {
@@ -105,6 +118,18 @@ void hewn_mc33_record_spread(const hewn_extractor *extractor, const struct hewn_
 void hewn_mc33_record_centres(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                               const hewn_surface *surface, const hewn_buffer buffers[3], const hewn_buffer *summary,
                               hewn_commands *commands);
+
+/* Where crossings are solved: their records become positions, with normals beside them. */
+typedef struct hewn_crossings {
+    uint64_t count;
+    bool dual;                /* they are not the mesh's vertices */
+    const hewn_buffer *bases; /* number of each brick's first */
+    const hewn_buffer *positions, *normals;
+    uint64_t summary; /* address of HEWN_SUMMARY_WORDS */
+} hewn_crossings;
+
+void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                           const hewn_crossings *crossings, hewn_commands *commands);
 
 /* What emission adds up; hewn_extract_stats says what it means. */
 typedef struct hewn_emission {

@@ -2,7 +2,9 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "eval/lists.h"
 #include "iso/extractor.h"
+#include "shared/lists.h"
 
 static hewn_result take_surface(const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
                                 hewn_error *error)
@@ -114,6 +116,34 @@ static void record_spread(const hewn_extractor *extractor, const struct hewn_gri
     hewn_commands_dispatch(commands, extractor->spread, &push, &extractor->table, hewn_groups_for(bricks->count, 32));
 }
 
+void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                           const hewn_crossings *crossings, hewn_commands *commands)
+{
+    const hewn_buffer *uniforms = hewn_code_uniforms(extractor->code);
+    if (hewn_code_is_listed(extractor->code)) {
+        struct hewn_listed_vertex_push push = {.grid = *grid,
+                                               .count = bricks->count,
+                                               .vertex_count = (uint32_t)crossings->count,
+                                               .dual = crossings->dual,
+                                               .bricks = bricks->list->address,
+                                               .vertex_bases = crossings->bases->address,
+                                               .positions = crossings->positions->address,
+                                               .normals = crossings->normals->address,
+                                               .summary = crossings->summary};
+        hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms,
+                               hewn_groups_for((uint64_t)bricks->count * 16, 64));
+        return;
+    }
+    struct hewn_vertex_push push = {.grid = *grid,
+                                    .count = (uint32_t)crossings->count,
+                                    .dual = crossings->dual,
+                                    .bricks = bricks->list->address,
+                                    .positions = crossings->positions->address,
+                                    .normals = crossings->normals->address,
+                                    .summary = crossings->summary};
+    hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms, hewn_groups_for(crossings->count, 64));
+}
+
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                               const hewn_surface *surface, const hewn_buffer buffers[3], hewn_workspace *workspace,
                               hewn_emission *out, hewn_error *error)
@@ -129,15 +159,12 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
         hewn_mc33_record_spread(extractor, grid, bricks, surface, buffers, commands);
     else
         record_spread(extractor, grid, bricks, surface, buffers, commands);
-    uint64_t on_edges = surface->crossing_count;
-    struct hewn_vertex_push vertices = {.grid = *grid,
-                                        .count = (uint32_t)on_edges,
-                                        .bricks = bricks->list->address,
-                                        .positions = buffers[0].address,
-                                        .normals = buffers[1].address,
-                                        .summary = summary->address};
-    hewn_commands_dispatch(commands, extractor->vertices, &vertices, hewn_code_uniforms(extractor->code),
-                           hewn_groups_for(on_edges, 64));
+    hewn_crossings crossings = {.count = surface->crossing_count,
+                                .bases = surface->vertex_bases,
+                                .positions = &buffers[0],
+                                .normals = &buffers[1],
+                                .summary = summary->address};
+    hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
     hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
     struct hewn_triangle_push triangles = {.count = (uint32_t)surface->triangle_count,
                                            .links = surface->links->address,

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "gpu/gpu.h"
 #include "shared/iso.h"
+#include "shared/lists.h"
 
 extern const char hewn_text_iso_head[];
 
@@ -178,6 +179,29 @@ static void test_suspect_kernels(void **state)
           MEMBER(hewn_suspect_push, counts, ADDRESS));
 }
 
+static void test_list_kernels(void **state)
+{
+    (void)state;
+    CHECK(hewn_choose_push, GRID(hewn_choose_push), MEMBER(hewn_choose_push, size, NUMBER),
+          MEMBER(hewn_choose_push, dense[0], NUMBER), MEMBER(hewn_choose_push, dense[2], NUMBER),
+          MEMBER(hewn_choose_push, tested, NUMBER), MEMBER(hewn_choose_push, parents, ADDRESS),
+          MEMBER(hewn_choose_push, parent_ranges, ADDRESS), MEMBER(hewn_choose_push, states, ADDRESS),
+          MEMBER(hewn_choose_push, flags, ADDRESS), MEMBER(hewn_choose_push, lengths, ADDRESS),
+          MEMBER(hewn_choose_push, choices, ADDRESS));
+    CHECK(hewn_gather_push, MEMBER(hewn_gather_push, dense[0], NUMBER), MEMBER(hewn_gather_push, tested, NUMBER),
+          MEMBER(hewn_gather_push, parents, ADDRESS), MEMBER(hewn_gather_push, states, ADDRESS),
+          MEMBER(hewn_gather_push, ranks, ADDRESS), MEMBER(hewn_gather_push, kept, ADDRESS),
+          MEMBER(hewn_gather_push, origins, ADDRESS));
+    CHECK(hewn_keep_push, MEMBER(hewn_keep_push, count, NUMBER), MEMBER(hewn_keep_push, dense, NUMBER),
+          MEMBER(hewn_keep_push, parent_ranges, ADDRESS), MEMBER(hewn_keep_push, origins, ADDRESS),
+          MEMBER(hewn_keep_push, places, ADDRESS), MEMBER(hewn_keep_push, choices, ADDRESS),
+          MEMBER(hewn_keep_push, lists, ADDRESS), MEMBER(hewn_keep_push, ranges, ADDRESS));
+    CHECK(hewn_listed_vertex_push, GRID(hewn_listed_vertex_push), MEMBER(hewn_listed_vertex_push, count, NUMBER),
+          MEMBER(hewn_listed_vertex_push, vertex_count, NUMBER), MEMBER(hewn_listed_vertex_push, bricks, ADDRESS),
+          MEMBER(hewn_listed_vertex_push, vertex_bases, ADDRESS), MEMBER(hewn_listed_vertex_push, positions, ADDRESS),
+          MEMBER(hewn_listed_vertex_push, normals, ADDRESS), MEMBER(hewn_listed_vertex_push, summary, ADDRESS));
+}
+
 #define A(type, name) MEMBER(type, name, ADDRESS)
 #define N(type, name) MEMBER(type, name, NUMBER)
 
@@ -216,7 +240,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_field_kernels),     cmocka_unit_test(test_fixed_kernels),
         cmocka_unit_test(test_trilinear_kernels), cmocka_unit_test(test_dual_kernels),
-        cmocka_unit_test(test_suspect_kernels),
+        cmocka_unit_test(test_suspect_kernels),   cmocka_unit_test(test_list_kernels),
     };
     return cmocka_run_group_tests_name("layout", tests, open_device, close_device);
 }

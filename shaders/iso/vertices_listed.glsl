@@ -1,0 +1,186 @@
+/* As vertices.glsl, with the same arithmetic for each vertex, for fields in lists: an invocation solves four vertices of
+ * a brick at once, so that one walk over its list serves them all. */
+#include "iso/grid.h"
+
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push
+{
+    hewn_listed_vertex_push push;
+};
+
+const float NEAREST = 1.25 / 4096.0;
+const float NEAR_ENOUGH = 1.0e-5;
+const float CORRECTED = 1.0e-3; /* of a cell: a place that is farther off than this lies on no surface */
+const uint MOST_TRIALS = 24u;
+const uint A_BRICK = 16u; /* invocations */
+
+struct Edge {
+    vec3 start;
+    uint axis;
+    float end, side;
+    uvec2 place; /* along the axis, and its last */
+};
+
+Edge edges[4];
+
+bool finite(float value)
+{
+    return abs(value) <= 3.0e38;
+}
+
+#ifdef FIELD_TOGETHER
+#define all_agree(condition) subgroupAll(condition)
+#else
+#define all_agree(condition) (condition)
+#endif
+
+/* Past the end any edge will do: what comes of it is not used. */
+void load_edge(uint vertex, uint end, uvec3 base, out Edge edge)
+{
+    uint record = 0u;
+    if (vertex < end)
+        record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
+    edge.axis = record >> 9;
+    uvec3 first = base + (uvec3(record, record >> 3, record >> 6) & 7u);
+    for (uint i = 0u; i < 3u; i++)
+        edge.start[i] = sample_coordinate(push.grid, i, first[i]);
+    edge.end = sample_coordinate(push.grid, edge.axis, first[edge.axis] + 1u);
+    precise float side = edge.end - edge.start[edge.axis];
+    edge.side = side;
+    edge.place = uvec2(first[edge.axis], push.grid.cells[edge.axis]);
+}
+
+vec3 point_along(const Edge edge, float t)
+{
+    precise float along = edge.start[edge.axis] + edge.side * t;
+    vec3 at = edge.start;
+    return mix(at, vec3(along), equal(uvec3(0u, 1u, 2u), uvec3(edge.axis)));
+}
+
+vec4 values_at(vec3 at[4])
+{
+    return field_points(vec4(at[0].x, at[1].x, at[2].x, at[3].x), vec4(at[0].y, at[1].y, at[2].y, at[3].y),
+                        vec4(at[0].z, at[1].z, at[2].z, at[3].z));
+}
+
+/* One false position or halving each, as crossing() in vertices.glsl. What is settled stays. */
+struct Search {
+    float a, b, fa, fb, guess, enough;
+    bool start_inside, settled;
+    int kept;
+};
+
+Search searches[4];
+
+void next_guess(inout Search s, uint trial)
+{
+    float slope = s.fb - s.fa;
+    float guess = s.a - s.fa * (s.b - s.a) / slope;
+    bool useful = finite(slope) && guess > s.a && guess < s.b;
+    guess = !useful || trial > 8u ? 0.5 * (s.a + s.b) : guess;
+    s.guess = s.settled ? s.guess : guess;
+}
+
+void narrow(inout Search s, float value)
+{
+    s.settled = s.settled || abs(value) <= s.enough || s.b - s.a < 2.0e-6;
+    bool low = (value < 0.0) == s.start_inside, on = !s.settled;
+    float fa = low ? value : s.kept == 2 ? 0.5 * s.fa : s.fa;
+    float fb = low ? (s.kept == 1 ? 0.5 * s.fb : s.fb) : value;
+    s.fa = on ? fa : s.fa;
+    s.fb = on ? fb : s.fb;
+    s.a = on && low ? s.guess : s.a;
+    s.b = on && !low ? s.guess : s.b;
+    s.kept = on ? (low ? 1 : 2) : s.kept;
+}
+
+void solve(vec4 at_start, vec4 at_end, uint count)
+{
+    for (uint k = 0u; k < 4u; k++)
+        searches[k] = Search(0.0, 1.0, at_start[k], at_end[k], 0.5, NEAR_ENOUGH * abs(at_end[k] - at_start[k]),
+                             at_start[k] < 0.0, k >= count, 0);
+    bool settled = false;
+    for (uint trial = 0u; trial < MOST_TRIALS && !all_agree(settled); trial++) {
+        vec3 at[4];
+        for (uint k = 0u; k < 4u; k++) {
+            next_guess(searches[k], trial);
+            at[k] = point_along(edges[k], searches[k].guess);
+        }
+        vec4 values = values_at(at);
+        settled = true;
+        for (uint k = 0u; k < 4u; k++) {
+            narrow(searches[k], values[k]);
+            settled = settled && searches[k].settled;
+        }
+    }
+}
+
+void write_vertex(uint vertex, vec3 at, vec3 normal)
+{
+    for (uint i = 0u; i < 3u; i++) {
+        push.positions.at[3u * vertex + i] = at[i];
+        push.normals.at[3u * vertex + i] = normal[i];
+    }
+}
+
+void write_solved(uint vertex, const Edge edge, vec3 at, vec4 gradient, float at_start, float at_end)
+{
+    bool capped = push.grid.open == 0u;
+    bool cap_start = capped && edge.place.x == 0u && at_start < 0.0;
+    bool cap_end = capped && edge.place.x + 1u == edge.place.y && at_end < 0.0;
+    vec3 outward = vec3(0.0);
+    outward[edge.axis] = cap_start || (!cap_end && at_end < 0.0) ? -1.0 : 1.0;
+    if (cap_start || cap_end) {
+        vec3 last = edge.start;
+        last[edge.axis] = edge.end;
+        write_vertex(vertex, cap_start ? edge.start : last, outward);
+        atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], 1u);
+        return;
+    }
+    float size = length(gradient.xyz);
+    bool sloped = finite(size) && size > 0.0;
+    float off = gradient.w / size;
+    if (push.dual != 0u && sloped && abs(off) <= push.grid.cell * CORRECTED)
+        at -= off * (gradient.xyz / size);
+    write_vertex(vertex, at, sloped ? gradient.xyz / size : outward);
+    float residual = abs(gradient.w) / (size * push.grid.cell);
+    if (sloped && finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
+        atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
+}
+
+void solve_four(uint first, uint end, uvec3 base)
+{
+    vec3 starts[4], ends[4], found[4];
+    for (uint k = 0u; k < 4u; k++) {
+        load_edge(first + k, end, base, edges[k]);
+        starts[k] = point_along(edges[k], 0.0);
+        ends[k] = edges[k].start;
+        ends[k][edges[k].axis] = edges[k].end;
+    }
+    vec4 at_start = values_at(starts), at_end = values_at(ends);
+    solve(at_start, at_end, first < end ? end - first : 0u);
+    float least = push.dual != 0u ? 0.0 : NEAREST;
+    for (uint k = 0u; k < 4u; k++)
+        found[k] = point_along(edges[k], clamp(searches[k].guess, least, 1.0 - least));
+    vec4 gradients[4];
+    field_gradients(vec4(found[0].x, found[1].x, found[2].x, found[3].x),
+                    vec4(found[0].y, found[1].y, found[2].y, found[3].y),
+                    vec4(found[0].z, found[1].z, found[2].z, found[3].z), gradients);
+    for (uint k = 0u; k < 4u; k++)
+        if (first + k < end)
+            write_solved(first + k, edges[k], found[k], gradients[k], at_start[k], at_end[k]);
+}
+
+void main()
+{
+    uint own = invocation(), slot = own / A_BRICK;
+    if (slot >= push.count) /* all of a brick's invocations */
+        return;
+    uint begin = push.vertex_bases.at[slot], end = push.vertex_count;
+    if (slot + 1u < push.count)
+        end = push.vertex_bases.at[slot + 1u];
+    uvec3 base = 8u * unpack_brick(push.bricks.at[slot]);
+    field_select(slot);
+    for (uint chunk = begin; chunk < end; chunk += 4u * A_BRICK)
+        solve_four(chunk + 4u * (own % A_BRICK), end, base);
+}

@@ -1,0 +1,56 @@
+/* Listed code: the field as lists of instructions that kernels walk over, one list for the whole field and a shorter
+ * one for each box that somebody prunes for.
+ *
+ * A kernel calls field_select(slot) to evaluate the list of a box that hewn_code_use_lists() named; before that it is
+ * the whole field's, and so it is again after field_select(FIELD_WHOLE). Straight code has a field_select() that does
+ * nothing, so kernels need not know which it is.
+ *
+ * Pruning drops an operand of a min, max or blend where bounds show that the arithmetic returns the other operand's
+ * bits, so every list gives the same bits in its box as the whole field. With HEWN_FLAVOUR_CHOICES a kernel has
+ *   vec2 field_choose(vec2 x, vec2 y, vec2 z, hewn_words choices, uint first)
+ *       field_interval(), which also writes two bits an instruction, from word `first` on
+ *   uint field_keep(hewn_words choices, uint first, bool write, hewn_words to, uint end)
+ *       how many instructions those choices leave; with `write` they are copied to where the list `to` has instructions
+ *       up to `end`
+ * and with HEWN_FLAVOUR_FOUR
+ *   vec4 field_points(vec4 x, vec4 y, vec4 z)
+ *   void field_gradients(vec4 x, vec4 y, vec4 z, out vec4 gradients[4])
+ * `FIELD_TOGETHER` is defined where the kernel is made so that a subgroup reads instructions together: then no
+ * invocation may leave before the last evaluation, and what subgroups decide they decide by vote. */
+#ifndef HEWN_SRC_EVAL_LISTS_H
+#define HEWN_SRC_EVAL_LISTS_H
+
+#include "eval/code.h"
+
+/* How a field is evaluated. */
+typedef enum hewn_evaluation {
+    HEWN_EVALUATION_AUTO,     /* listed where the field is large enough for pruning to pay, and can be */
+    HEWN_EVALUATION_STRAIGHT, /* code for each operation */
+    HEWN_EVALUATION_LISTED    /* lists, where there can be */
+} hewn_evaluation;
+
+typedef struct hewn_code_desc {
+    hewn_numbers numbers; /* of straight code */
+    hewn_evaluation evaluation;
+    bool whole; /* no list is pruned: for comparison */
+} hewn_code_desc;
+
+hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, hewn_node root,
+                                const hewn_code_desc *desc, hewn_code **out, hewn_error *error);
+
+bool hewn_code_is_listed(const hewn_code *code);
+
+/* Instructions of the whole field, and bytes of one. */
+uint32_t hewn_code_instruction_count(const hewn_code *code);
+uint32_t hewn_code_instruction_bytes(const hewn_code *code);
+
+/* Kernels made with HEWN_FLAVOUR_TOGETHER give one list to this many invocations in a row, or to a multiple. */
+#define HEWN_LIST_INVOCATIONS 8u
+
+/* Bytes that a list's buffer has past its end: what is read together may reach beyond the last instruction. */
+#define HEWN_LIST_SLACK 64u
+
+/* From the next submit on, slots are those of `ranges` (two words each: first instruction and count) in `lists`. */
+void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_buffer *ranges);
+
+#endif

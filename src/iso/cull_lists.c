@@ -1,0 +1,144 @@
+/* Culling of a field in lists: each level's interval arithmetic walks the lists of the level above, and makes shorter
+ * ones for the blocks it keeps. Counts come home between levels, since only they tell how large the lists are. */
+#include <string.h>
+
+#include "base/error.h"
+#include "eval/lists.h"
+#include "iso/extractor.h"
+#include "shared/lists.h"
+
+typedef struct list_level {
+    uint32_t tested, kept;
+    uint32_t size; /* cells along a block's side */
+    uint64_t choice_words;
+    hewn_buffer *states, *flags, *lengths, *choices;
+    hewn_buffer *list, *origins, *ranges, *instructions;
+} list_level;
+
+typedef struct list_run {
+    const hewn_extractor *extractor;
+    const struct hewn_grid *grid;
+    hewn_workspace *workspace;
+    hewn_buffer *totals, *results;
+    uint32_t top[3];
+    bool at_top;
+    list_level level, above;
+} list_run;
+
+static hewn_result take(list_run *run, const char *what, uint64_t bytes, hewn_buffer **out, hewn_error *error)
+{
+    return hewn_workspace_take(run->workspace, what, bytes, HEWN_BUFFER_DEVICE, out, error);
+}
+
+static hewn_result take_tested(list_run *run, hewn_buffer **scratch, hewn_error *error)
+{
+    list_level *level = &run->level;
+    uint64_t tested = level->tested;
+    HEWN_TRY(take(run, "culling states", 4 * tested, &level->states, error));
+    HEWN_TRY(take(run, "culling flags", 4 * tested, &level->flags, error));
+    HEWN_TRY(take(run, "lengths of lists", 4 * (tested + 1), &level->lengths, error));
+    HEWN_TRY(take(run, "choices of lists", 4 * level->choice_words, &level->choices, error));
+    return take(run, "culling scratch", hewn_scan_scratch_bytes(tested + 1), scratch, error);
+}
+
+static uint64_t address_of(const hewn_buffer *buffer)
+{
+    return buffer ? buffer->address : 0;
+}
+
+/* Tests the level's blocks, and learns how many are kept and how many instructions their lists have. */
+static hewn_result choose(list_run *run, uint32_t totals[4], hewn_error *error)
+{
+    list_level *level = &run->level;
+    hewn_buffer *scratch;
+    HEWN_TRY(take_tested(run, &scratch, error));
+    struct hewn_choose_push push = {.grid = *run->grid,
+                                    .size = level->size,
+                                    .tested = level->tested,
+                                    .parents = address_of(run->above.list),
+                                    .parent_ranges = address_of(run->above.ranges),
+                                    .states = level->states->address,
+                                    .flags = level->flags->address,
+                                    .lengths = level->lengths->address,
+                                    .choices = level->choices->address};
+    if (run->at_top)
+        memcpy(push.dense, run->top, sizeof push.dense);
+    hewn_commands *commands;
+    HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
+    hewn_commands_fill(commands, level->lengths, (uint64_t)4 * level->tested, 4, 0);
+    hewn_commands_dispatch(commands, run->extractor->choose, &push, hewn_code_uniforms(run->extractor->code),
+                           hewn_groups_for(level->tested, 64));
+    hewn_scan_record(run->extractor->scan, commands, level->flags->address, level->tested, run->totals->address,
+                     scratch->address);
+    hewn_scan_record(run->extractor->scan, commands, level->lengths->address, (uint64_t)level->tested + 1,
+                     run->totals->address + 8, scratch->address);
+    hewn_commands_copy(commands, run->totals, 0, run->results, 0, 16);
+    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    memcpy(totals, run->results->mapped, 16);
+    return hewn_scan_check(totals + 2, "instructions of lists", error);
+}
+
+static hewn_result make_lists(list_run *run, uint64_t instructions, hewn_error *error)
+{
+    list_level *level = &run->level;
+    uint64_t bytes = hewn_code_instruction_bytes(run->extractor->code) * instructions + HEWN_LIST_SLACK;
+    HEWN_TRY(take(run, "culling lists", (uint64_t)4 * level->kept, &level->list, error));
+    HEWN_TRY(take(run, "culling origins", (uint64_t)4 * level->kept, &level->origins, error));
+    HEWN_TRY(take(run, "ranges of lists", (uint64_t)8 * level->kept, &level->ranges, error));
+    HEWN_TRY(take(run, "instructions", bytes, &level->instructions, error));
+    struct hewn_gather_push gather = {.tested = level->tested,
+                                      .parents = address_of(run->above.list),
+                                      .states = level->states->address,
+                                      .ranks = level->flags->address,
+                                      .kept = level->list->address,
+                                      .origins = level->origins->address};
+    if (run->at_top)
+        memcpy(gather.dense, run->top, sizeof gather.dense);
+    struct hewn_keep_push keep = {.count = level->kept,
+                                  .dense = run->at_top,
+                                  .parent_ranges = address_of(run->above.ranges),
+                                  .origins = level->origins->address,
+                                  .places = level->lengths->address,
+                                  .choices = level->choices->address,
+                                  .lists = level->instructions->address,
+                                  .ranges = level->ranges->address};
+    hewn_commands *commands;
+    HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
+    hewn_commands_dispatch(commands, run->extractor->gather, &gather, NULL, hewn_groups_for(level->tested, 64));
+    hewn_commands_dispatch(commands, run->extractor->keep_lists, &keep, hewn_code_uniforms(run->extractor->code),
+                           hewn_groups_for(level->kept, 64));
+    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    hewn_code_use_lists(run->extractor->code, level->instructions, level->ranges);
+    return HEWN_OK;
+}
+
+hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                   hewn_workspace *workspace, hewn_bricks *out, hewn_error *error)
+{
+    list_run run = {.extractor = extractor, .grid = grid, .workspace = workspace, .at_top = true};
+    uint32_t size = hewn_grid_levels(grid, &out->levels, run.top);
+    uint64_t count = (uint64_t)run.top[0] * run.top[1] * run.top[2];
+    uint64_t words = (hewn_code_instruction_count(extractor->code) + 15) / 16 * count;
+    memcpy(out->top, run.top, sizeof out->top);
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_DEVICE, &run.totals, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_READBACK, &run.results, error));
+    for (uint32_t i = 0; i < out->levels; i++, size /= HEWN_LEVEL_RATIO) {
+        uint32_t totals[4] = {0};
+        if (count > UINT32_MAX / 4)
+            return hewn_fail(error, HEWN_LIMIT, "%llu blocks are too many to cull at once", (unsigned long long)count);
+        run.level = (list_level){.tested = (uint32_t)count, .size = size, .choice_words = words};
+        HEWN_TRY(choose(&run, totals, error));
+        run.level.kept = totals[0];
+        if (totals[0] == 0)
+            return HEWN_OK;
+        HEWN_TRY(make_lists(&run, totals[2], error));
+        out->states[i] = run.level.states;
+        run.above = run.level;
+        run.at_top = false;
+        count = (uint64_t)64 * totals[0];
+        words = (uint64_t)4 * totals[2] + count;
+    }
+    out->count = run.level.kept;
+    out->list = run.level.list;
+    return HEWN_OK;
+}
