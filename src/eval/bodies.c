@@ -154,7 +154,7 @@ static value_name write_operand(body_writer *writer, const hewn_gathering *own, 
     if (own->absorbed >> k & 1)
         return write_value(writer, operand);
     uint32_t slot = 0;
-    while (writer->body->inputs[slot] != operand)
+    while (slot + 1 < HEWN_BODY_INPUTS && writer->body->inputs[slot] != operand)
         slot++;
     return name_all(slots[slot], HEWN_NO_STEP);
 }
