@@ -273,14 +273,14 @@ const hewn_command hewn_command_info = {
              "bounds, units, up axis, files and the size of its field. Of a mesh (.glb, .gltf,\n"
              ".obj, .ply, .stl, .off, also with .gz): its counts, unit, axes and attributes,\n"
              "and what `hewn check` finds but for self-intersections. Of a volume (.nii, .hdr,\n"
-             ".nrrd, .nhdr, .mha, .mhd, .raw, .npy, .inr, .tif, .vdb, .dcm, also with .gz, or a\n"
-             "folder of DICOM): its voxels, their type, place and range. Needs no device.\n",
+             ".nrrd, .nhdr, .mha, .mhd, .raw, .npy, .inr, .tif, .vdb, .dcm, also with .gz, or\n"
+             "a folder of DICOM): its voxels, their type, place and range. Needs no device.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
              "  hewn info assets/scenes/menger.lua\n"
              "  hewn info bracket.glb --json\n"
              "  hewn info head.nii.gz --iso otsu\n"
-             "  hewn info ct.raw --dims 512,512,300 --type int16 --spacing 0.7,0.7,1\n",
+             "  hewn info ct.raw --dims 512,512,300 --type int16\n",
     .run = run,
 };
