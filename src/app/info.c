@@ -281,6 +281,6 @@ const hewn_command hewn_command_info = {
              "  hewn info assets/scenes/menger.lua\n"
              "  hewn info bracket.glb --json\n"
              "  hewn info head.nii.gz --iso otsu\n"
-             "  hewn info ct.raw --dims 512,512,300 --type int16 --spacing 0.7,0.7,1\n",
+             "  hewn info ct.raw --dims 512,512,300 --type int16\n",
     .run = run,
 };

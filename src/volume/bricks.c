@@ -127,7 +127,7 @@ static bool fill_rows(const hewn_volume *volume, uint64_t frame, hewn_volume_bri
 {
     bool good = true;
     uint64_t rows = (uint64_t)out->dims[1] * out->dims[2];
-#pragma omp parallel reduction(&& : good)
+#pragma omp parallel reduction(&& : good) if (hewn_volume_stretches(volume) >= HEWN_VOXEL_ALONE)
     {
         uint32_t width = volume->dims[0];
         brick_row row = {.volume = volume, .frame = frame};

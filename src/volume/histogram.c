@@ -45,7 +45,7 @@ hewn_result hewn_volume_find_histogram(const hewn_volume *volume, uint64_t frame
     out->lo = lo;
     out->hi = hi;
     out->count = count;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (hewn_volume_stretches(volume) >= HEWN_VOXEL_ALONE)
     for (int part = 0; part < PARTS; part++)
         count_share(volume, frame, (uint64_t)part, PARTS, out, tables + (size_t)part * count);
     for (uint32_t bin = 0; bin < count; bin++) {

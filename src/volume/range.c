@@ -9,7 +9,7 @@ hewn_volume_range hewn_volume_find_range(const hewn_volume *volume, uint64_t fra
 {
     double lo = INFINITY, hi = -INFINITY;
     uint64_t finite = 0, nan = 0, stretches = hewn_volume_stretches(volume), size = hewn_volume_frame_size(volume);
-#pragma omp parallel for schedule(static) reduction(min : lo) reduction(max : hi) reduction(+ : finite, nan)
+#pragma omp parallel for schedule(static) reduction(min : lo) reduction(max : hi) reduction(+ : finite, nan) if (stretches >= HEWN_VOXEL_ALONE)
     for (uint64_t index = 0; index < stretches; index++) {
         double samples[HEWN_VOXEL_STRETCH];
         size_t count = hewn_volume_stretch(volume, frame, index, samples);
@@ -59,7 +59,7 @@ static void count_digits(const hewn_volume *volume, uint64_t frame, uint64_t pre
 {
     uint64_t stretches = hewn_volume_stretches(volume);
     int shift = 64 - done - DIGIT_BITS;
-#pragma omp parallel for schedule(static) num_threads(threads)
+#pragma omp parallel for schedule(static) num_threads(threads) if (stretches >= HEWN_VOXEL_ALONE)
     for (int thread = 0; thread < threads; thread++) {
         uint64_t *own = scratch + (size_t)thread * DIGITS;
         memset(own, 0, DIGITS * sizeof *own);

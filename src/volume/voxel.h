@@ -43,6 +43,9 @@ void hewn_voxels_to_double(const hewn_volume *volume, uint64_t at, size_t count,
 /* Calls that go through a frame do so in stretches of this many samples, whatever the number of threads. */
 enum { HEWN_VOXEL_STRETCH = 4096 };
 
+/* With fewer stretches than this one thread is faster than several. */
+enum { HEWN_VOXEL_ALONE = 16 };
+
 static inline uint64_t hewn_volume_stretches(const hewn_volume *volume)
 {
     return (hewn_volume_frame_size(volume) + HEWN_VOXEL_STRETCH - 1) / HEWN_VOXEL_STRETCH;

@@ -3,6 +3,7 @@
 #include <bzlib.h>
 #include <zlib.h>
 
+#include "io/shim/module.h"
 #include "volume_files.h"
 
 /* A file in a folder of its own, read, and taken away again. */
@@ -444,6 +445,60 @@ static void test_dicom_series(void **state)
     remove_files(folder);
 }
 
+/* A file of which each byte in turn is changed, among them some that the library behind the reader ends the process
+ * for: this process lives on and says why. */
+static void test_dicom_damaged(void **state)
+{
+    (void)state;
+    truth known = make_truth();
+    static const hewn_volume_read_desc desc = {.memory_limit = 1 << 24};
+    hewn_text text = {0};
+    int refused = 0, fatal = 0;
+    char message[256];
+    assert_non_null(hewn_module_load("hewn_dicom", message, sizeof message)); /* once, not in each of the processes */
+    put_dicom_slice(&text, &known, 0, "1.2.9", 2);
+    for (size_t at = 140; at < text.length - TRUTH_X * TRUTH_Y * 2; at += 3) {
+        text.bytes[at] ^= 0x40;
+        hewn_volume_source source = {.bytes = text.bytes, .length = text.length, .name = "given", .desc = &desc};
+        hewn_volume volume;
+        hewn_error error = {0};
+        if (hewn_dicom_read(&source, &volume, &error) != HEWN_OK) {
+            assert_string_equal(error.file, "given");
+            refused++;
+            fatal += strstr(error.message, "does not survive") != NULL;
+        }
+        hewn_volume_destroy(&volume);
+        text.bytes[at] ^= 0x40;
+    }
+    print_message("# %d refused, %d of them fatal to the library\n", refused, fatal);
+    assert_true(refused > 0);
+    hewn_text_clear(&text);
+}
+
+/* Who asks for the end while another process reads gets it. */
+static bool refuse(void *user, const char *stage, double fraction)
+{
+    (void)stage;
+    (void)fraction;
+    return (*(int *)user)++ < 1;
+}
+
+static void test_apart_cancelled(void **state)
+{
+    (void)state;
+    truth known = make_truth();
+    int calls = 0;
+    const hewn_progress progress = {refuse, &calls};
+    const hewn_volume_read_desc desc = {.progress = &progress};
+    hewn_text text = {0};
+    put_dicom_slice(&text, &known, 0, "1.2.9", 2);
+    hewn_volume_source source = {.bytes = text.bytes, .length = text.length, .name = "given", .desc = &desc};
+    hewn_volume volume;
+    assert_int_equal(hewn_dicom_read(&source, &volume, NULL), HEWN_CANCELLED);
+    assert_null(volume.samples);
+    hewn_text_clear(&text);
+}
+
 /* Large files are looked at where they lie; what is there is what a small one has. */
 static void test_mapped(void **state)
 {
@@ -475,13 +530,14 @@ static void test_mapped(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nifti),        cmocka_unit_test(test_nifti_pair),
-        cmocka_unit_test(test_nifti_scale),  cmocka_unit_test(test_nrrd),
-        cmocka_unit_test(test_nrrd_frames),  cmocka_unit_test(test_nrrd_detached),
-        cmocka_unit_test(test_metaimage),    cmocka_unit_test(test_metaimage_detached),
-        cmocka_unit_test(test_npy),          cmocka_unit_test(test_raw),
-        cmocka_unit_test(test_inr),          cmocka_unit_test(test_dicom),
-        cmocka_unit_test(test_dicom_series), cmocka_unit_test(test_mapped),
+        cmocka_unit_test(test_nifti),         cmocka_unit_test(test_nifti_pair),
+        cmocka_unit_test(test_nifti_scale),   cmocka_unit_test(test_nrrd),
+        cmocka_unit_test(test_nrrd_frames),   cmocka_unit_test(test_nrrd_detached),
+        cmocka_unit_test(test_metaimage),     cmocka_unit_test(test_metaimage_detached),
+        cmocka_unit_test(test_npy),           cmocka_unit_test(test_raw),
+        cmocka_unit_test(test_inr),           cmocka_unit_test(test_dicom),
+        cmocka_unit_test(test_dicom_series),  cmocka_unit_test(test_mapped),
+        cmocka_unit_test(test_dicom_damaged), cmocka_unit_test(test_apart_cancelled),
     };
     return cmocka_run_group_tests_name("volume formats", tests, NULL, NULL);
 }

@@ -29,7 +29,7 @@ typedef struct reply {
 enum { SAMPLES_AT = 4096 };
 _Static_assert(sizeof(reply) <= SAMPLES_AT, "samples begin after the reply");
 
-static const uint64_t SPARE = (uint64_t)1 << 30; /* bytes for the library itself, and what it unpacks on its way */
+static const uint64_t SPARE = (uint64_t)1 << 26; /* bytes for the library itself */
 
 /* --- in the other process ----------------------------------------------------------------------------------------- */
 
@@ -59,7 +59,9 @@ static void limit_memory(const hewn_apart *job)
         file && fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) == 1; /* data and stack, as RLIMIT_DATA counts */
     if (file)
         fclose(file);
-    uint64_t most = 2 * hewn_volume_limit(&limits) + SPARE + (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
+    uint64_t file_bytes = job->source ? job->source->length : 0; /* libraries copy it, more than once */
+    uint64_t most =
+        2 * hewn_volume_limit(&limits) + 4 * file_bytes + SPARE + (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
     const struct rlimit limit = {most, most};
     if (known)
         setrlimit(RLIMIT_DATA, &limit);

@@ -271,6 +271,8 @@ hewn_result hewn_metaimage_read(hewn_volume_source *source, hewn_volume *out, he
     HEWN_TRY(read_header(source, &header, error));
     HEWN_TRY(set_head(&header, &volume, error));
     HEWN_TRY(hewn_volume_head_check(source, &volume, NULL, error));
+    /* Now: the text may go away with the samples that follow it. */
+    volume.name = hewn_volume_text(header.comment.begin, (size_t)(header.comment.end - header.comment.begin));
     hewn_result result = find_samples(source, &header, &volume, error);
     hewn_file_axis axes[MOST_AXES + 1] = {{header.channels, -1}};
     for (uint32_t i = 0; i < header.axes; i++)
@@ -281,7 +283,6 @@ hewn_result hewn_metaimage_read(hewn_volume_source *source, hewn_volume *out, he
         hewn_volume_destroy(&volume);
         return result;
     }
-    volume.name = hewn_volume_text(header.comment.begin, (size_t)(header.comment.end - header.comment.begin));
     *out = volume;
     return HEWN_OK;
 }

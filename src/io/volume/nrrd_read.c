@@ -187,6 +187,8 @@ hewn_result hewn_nrrd_read(hewn_volume_source *source, hewn_volume *out, hewn_er
     volume.unit = unit_of(header.unit);
     hewn_volume_turn_world(&volume, header.left, header.posterior);
     HEWN_TRY(hewn_volume_head_check(source, &volume, NULL, error));
+    /* Now: the text may go away with the samples that follow it. */
+    volume.name = hewn_volume_text(header.content.begin, (size_t)(header.content.end - header.content.begin));
     hewn_result result = header.data_file.begin < header.data_file.end
                              ? read_elsewhere(source, &header, &volume, error)
                              : read_samples(source, &header, header.samples_at, &volume, error);
@@ -196,7 +198,6 @@ hewn_result hewn_nrrd_read(hewn_volume_source *source, hewn_volume *out, hewn_er
         hewn_volume_destroy(&volume);
         return result;
     }
-    volume.name = hewn_volume_text(header.content.begin, (size_t)(header.content.end - header.content.begin));
     *out = volume;
     return HEWN_OK;
 }
