@@ -207,16 +207,18 @@ static void pruned_trees_are_whole_ones(void **state)
     gpu_test_close(&device, &messages);
 }
 
-static void check_against_straight(hewn_device *device, const shrub *made, uint32_t resolution, const char *what)
+static void check_against_straight(hewn_device *device, const shrub *made, uint32_t resolution, hewn_method second,
+                                   const char *what)
 {
     hewn_extractor *listed = make_extractor(device, made, HEWN_EVALUATION_LISTED, false);
     hewn_extractor *straight = make_extractor(device, made, HEWN_EVALUATION_STRAIGHT, false);
     assert_true(hewn_code_is_listed(listed->code) && !hewn_code_is_listed(straight->code));
-    for (int method = 0; method < 2; method++) {
-        hewn_triangles a = mesh_with(listed, resolution, method ? HEWN_METHOD_MC33 : HEWN_METHOD_MARCHING_CUBES);
-        hewn_triangles b = mesh_with(straight, resolution, method ? HEWN_METHOD_MC33 : HEWN_METHOD_MARCHING_CUBES);
+    const hewn_method methods[] = {HEWN_METHOD_MARCHING_CUBES, second, HEWN_METHOD_NETS};
+    for (int i = 0; i < (gpu_test_long() ? 3 : 2); i++) {
+        hewn_triangles a = mesh_with(listed, resolution, methods[i]);
+        hewn_triangles b = mesh_with(straight, resolution, methods[i]);
         if (!same_mesh(&a, &b))
-            fail_msg("%s by method %d differs in lists: %llu vertices and %llu", what, method,
+            fail_msg("%s by %s differs in lists: %llu vertices and %llu", what, hewn_method_name(methods[i]),
                      (unsigned long long)a.vertex_count, (unsigned long long)b.vertex_count);
         hewn_triangles_destroy(&a);
         hewn_triangles_destroy(&b);
@@ -234,7 +236,7 @@ static void lists_are_straight_code(void **state)
         char what[32];
         shrub made = make_shrub(50 + i, 3 + 9 * (i % 3));
         snprintf(what, sizeof what, "tree %u", i);
-        check_against_straight(device, &made, 40, what);
+        check_against_straight(device, &made, 40, HEWN_METHOD_DC, what);
         hewn_field_destroy(&made.field);
     }
     gpu_test_close(&device, &messages);
@@ -273,7 +275,7 @@ static void odd_fields_are_straight_code(void **state)
         GPU_TEST_TRY(hewn_field_status(f, &error));
         char what[32];
         snprintf(what, sizeof what, "odd field %d", which);
-        check_against_straight(device, &made, 50, what);
+        check_against_straight(device, &made, 50, HEWN_METHOD_MC33, what);
         hewn_field_destroy(&made.field);
     }
     gpu_test_close(&device, &messages);
