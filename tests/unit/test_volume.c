@@ -184,7 +184,7 @@ static void test_histogram(void **state)
 static double find_iso(const char *text, const hewn_volume *volume)
 {
     hewn_iso iso;
-    double value;
+    double value = 0;
     hewn_error error = {0};
     if (hewn_iso_parse(text, &iso, &error) != HEWN_OK || hewn_iso_find(&iso, volume, 0, &value, &error) != HEWN_OK)
         fail_msg("%s: %s", text, error.message);

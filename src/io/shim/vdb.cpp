@@ -175,6 +175,8 @@ try {
     openvdb::initialize();
     memory_buffer buffer(bytes, length);
     std::istream stream(&buffer);
+    /* OpenVDB does not look whether there was something to read, and would go through a count of billions. */
+    stream.exceptions(std::ios::badbit | std::ios::failbit);
     openvdb::GridPtrVecPtr grids = openvdb::io::Stream(stream, false).getGrids();
     std::unique_ptr<hewn_vdb> held;
     hewn_vdb_result result = choose(*grids, name, &held, message, room);
@@ -186,6 +188,8 @@ try {
 } catch (const std::bad_alloc &) {
     std::snprintf(message, room, "out of memory for the grids");
     return HEWN_VDB_OUT_OF_MEMORY;
+} catch (const std::ios::failure &) {
+    return fail(message, room, "the file ends early, or is damaged");
 } catch (const std::exception &failure) {
     return fail(message, room, failure.what());
 } catch (...) {

@@ -70,6 +70,15 @@ static void limit_memory(const hewn_apart *job)
 #endif
 }
 
+/* Nor may it work for ever. Of a folder nobody knows how much there is. */
+static void limit_time(const hewn_apart *job)
+{
+    uint64_t seconds = 60 + (job->source ? job->source->length : 0) / (1 << 18);
+    const struct rlimit limit = {seconds, seconds};
+    if (job->source)
+        setrlimit(RLIMIT_CPU, &limit); /* of this process, from its start */
+}
+
 static void copy_text(char out[256], const char *text)
 {
     snprintf(out, 256, "%s", text ? text : "");
@@ -89,6 +98,7 @@ static bool work(const hewn_apart *job, int file)
         signal(fatal[i], SIG_DFL);
     setrlimit(RLIMIT_CORE, &no_core);
     limit_memory(job);
+    limit_time(job);
     desc.progress = NULL;
     if (job->source)
         job->source->desc = &desc;
