@@ -74,8 +74,8 @@ void write_vertex(uint vertex, vec3 place, vec3 normal)
     }
 }
 
-/* A vertex's normal: that of the surface there where its crossings' normals, which sum to `along`, agree within about 37
- * degrees, and so are those of one smooth piece; else their mean. */
+/* A vertex's normal: that of the surface there where its crossings' normals, which sum to `along`, agree within about
+ * 37 degrees, and so are those of one smooth piece; else their mean. */
 vec3 vertex_normal(vec4 seen, vec3 along, float count)
 {
     float usual = length(along);

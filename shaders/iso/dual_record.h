@@ -4,8 +4,9 @@
 
 #include "iso/edge_vertex.h"
 
-/* A vertex stands for a loop of a cell: its brick's slot, the cell's place in the brick, the edges that the loop passes,
- * a bit each, and how many loops the cell has. edge_vertex(links, edges, slot, at, edge) numbers the crossing on such an edge. */
+/* A vertex stands for a loop of a cell: its brick's slot, the cell's place in the brick, the edges that the loop
+ * passes, a bit each, and how many loops the cell has. edge_vertex(links, edges, slot, at, edge) numbers the crossing
+ * on such an edge. */
 struct DualRecord {
     uint slot;
     uvec3 at;

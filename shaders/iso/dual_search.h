@@ -1,10 +1,10 @@
-/* GLSL only: what dual contouring looks for beyond the planes that the crossings of a cell have. Included after iso/qef.h and
- * iso/dual_place.h. */
+/* GLSL only: what dual contouring looks for beyond the planes that the crossings of a cell have. Included after
+ * iso/qef.h and iso/dual_place.h. */
 
 /* Up to here a place is on the surface, in cells. */
 const float ON_SURFACE = 5.0e-5;
-/* Along a sharp edge the field is asked where the edge leaves the cell: a surface that is off it there, and meets it at no
- * less than 6 degrees, is a plane that no crossing saw. */
+/* Along a sharp edge the field is asked where the edge leaves the cell: a surface that is off it there, and meets it at
+ * no less than 6 degrees, is a plane that no crossing saw. */
 const float MEETS = 0.1;
 /* Planes whose normals are nearer than about 11 degrees are one surface. */
 const float SAME = 0.98;
@@ -50,7 +50,8 @@ uvec3 surfaces_of_planes()
  * through the face between: so no other cell sees it. 3 where that is not so. */
 uint beyond_face(Cell cell, vec3 at, uvec3 sets)
 {
-    vec3 low = step(at, cell.lo) * step(vec3(1.0e-7), cell.lo - at), high = step(cell.hi, at) * step(vec3(1.0e-7), at - cell.hi);
+    vec3 low = step(at, cell.lo) * step(vec3(1.0e-7), cell.lo - at),
+         high = step(cell.hi, at) * step(vec3(1.0e-7), at - cell.hi);
     vec3 out_of = low + high;
     uint axis = out_of.x > 0.0 ? 0u : out_of.y > 0.0 ? 1u : 2u;
     float face = low[axis] > 0.0 ? cell.lo[axis] : cell.hi[axis];

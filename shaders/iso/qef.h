@@ -14,8 +14,8 @@
 #define QEF_MOST 18u
 
 /* A direction counts where its singular value is at least this share of the greatest one. Two flat pieces with as many
- * crossings each give tan(a / 2), a the angle between their normals: edges blunter than 174 degrees are taken as smooth.
- * docs/extraction.md has what was measured. */
+ * crossings each give tan(a / 2), a the angle between their normals: edges blunter than 174 degrees are taken as
+ * smooth. docs/extraction.md has what was measured. */
 const float QEF_CUT = 0.05;
 /* What remains after the cut is 0 but for rounding where it is below this share. */
 const float QEF_NOISE = 1.0e-5;
@@ -135,8 +135,10 @@ vec3 qef_on_box(mat3 root, vec3 best, vec3 mass, vec3 lo, vec3 hi)
         float apart = dot(other, other);
         vec3 step = vec3(0.0);
         if (sizes[first] > noise) {
-            step[second] = apart > noise ? dot(other, rest) / apart : share * dot(a, rest) / (size * (1.0 + share * share));
-            step[first] = apart > noise ? dot(a, rest - step[second] * b) / size : dot(a, rest) / (size * (1.0 + share * share));
+            step[second] =
+                apart > noise ? dot(other, rest) / apart : share * dot(a, rest) / (size * (1.0 + share * share));
+            step[first] =
+                apart > noise ? dot(a, rest - step[second] * b) / size : dot(a, rest) / (size * (1.0 + share * share));
         }
         vec3 at = from + step;
         vec3 off = root * (best - at);
