@@ -175,7 +175,7 @@ static void pruned_trees_are_whole_ones(void **state)
     hewn_extractor *pruned = make_extractor(device, &pattern, HEWN_EVALUATION_LISTED, false);
     hewn_extractor *whole = make_extractor(device, &pattern, HEWN_EVALUATION_LISTED, true);
     assert_true(hewn_code_is_listed(pruned->code));
-    uint32_t trees = gpu_test_long() ? 10000 : 200, compared = 0;
+    uint32_t trees = gpu_test_long() ? 10000 : 40, compared = 0;
     uint64_t vertices = 0;
     for (uint32_t i = 1; i <= trees; i++) {
         uint64_t random = i;
