@@ -6,9 +6,6 @@
 #include "eval/lists.h"
 #include "iso/extractor.h"
 
-/* A level fine enough to start with has at most this many blocks along an axis. */
-#define TOP_BLOCKS 16u
-
 typedef struct cull_level {
     uint32_t size;      /* cells along a block's side */
     uint64_t capacity;  /* blocks that may be tested */
@@ -23,36 +20,13 @@ typedef struct cull_plan {
     hewn_buffer *control, *scratch, *results;
 } cull_plan;
 
-static uint64_t blocks_at(const struct hewn_grid *grid, uint32_t shrink, uint32_t blocks[3])
-{
-    uint64_t product = 1;
-    for (int axis = 0; axis < 3; axis++) {
-        blocks[axis] = (hewn_grid_bricks(grid, axis) + shrink - 1) / shrink;
-        product *= blocks[axis];
-    }
-    return product;
-}
-
-uint32_t hewn_grid_levels(const struct hewn_grid *grid, uint32_t *levels, uint32_t top[3])
-{
-    uint32_t shrink = 1;
-    for (*levels = 1;; (*levels)++, shrink *= HEWN_LEVEL_RATIO) {
-        blocks_at(grid, shrink, top);
-        uint32_t most = top[0];
-        for (int axis = 1; axis < 3; axis++)
-            most = top[axis] > most ? top[axis] : most;
-        if (most <= TOP_BLOCKS || *levels == HEWN_MAX_LEVELS)
-            return 8 * shrink;
-    }
-}
-
 static void lay_levels(const struct hewn_grid *grid, cull_plan *plan)
 {
     uint32_t blocks[3], shrink = hewn_grid_levels(grid, &plan->levels, plan->top) / 8;
     for (uint32_t i = 0; i < plan->levels; i++, shrink /= HEWN_LEVEL_RATIO) {
         cull_level *level = &plan->level[i];
         level->size = 8 * shrink;
-        level->kept_most = blocks_at(grid, shrink, blocks);
+        level->kept_most = hewn_grid_blocks(grid, shrink, blocks);
         level->capacity = i == 0 ? level->kept_most : 64 * plan->level[i - 1].kept_most;
     }
 }

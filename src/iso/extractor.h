@@ -77,10 +77,6 @@ hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_
 hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct hewn_grid *grid,
                                    hewn_workspace *workspace, hewn_bricks *out, hewn_error *error);
 
-/* Levels of culling, blocks of the coarsest, and the cells along their sides. Bricks come in the order of their blocks,
- * so that vertices do in every kind of culling. */
-uint32_t hewn_grid_levels(const struct hewn_grid *grid, uint32_t *levels, uint32_t top[3]);
-
 /* The surface in those bricks, as counts and ranks on the device. */
 typedef struct hewn_surface {
     uint64_t crossing_count; /* crossed edges of the grid */

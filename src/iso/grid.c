@@ -7,6 +7,9 @@
 /* Where a side is a whole number of cells but for rounding, it does not grow by one more. */
 #define WHOLE_CELL_SLACK 1e-6
 
+/* A level fine enough to start with has at most this many blocks along an axis. */
+#define TOP_BLOCKS 16u
+
 static hewn_result check_bounds(const hewn_box *bounds, hewn_error *error)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -79,4 +82,27 @@ uint32_t hewn_grid_bricks(const struct hewn_grid *grid, int axis)
     uint32_t samples =
         grid->cells[axis] + grid->open; /* the last layer of a closed grid is outside: no brick needs it */
     return (samples + 7) / 8;
+}
+
+uint64_t hewn_grid_blocks(const struct hewn_grid *grid, uint32_t shrink, uint32_t blocks[3])
+{
+    uint64_t product = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        blocks[axis] = (hewn_grid_bricks(grid, axis) + shrink - 1) / shrink;
+        product *= blocks[axis];
+    }
+    return product;
+}
+
+uint32_t hewn_grid_levels(const struct hewn_grid *grid, uint32_t *levels, uint32_t top[3])
+{
+    uint32_t shrink = 1;
+    for (*levels = 1;; (*levels)++, shrink *= HEWN_LEVEL_RATIO) {
+        hewn_grid_blocks(grid, shrink, top);
+        uint32_t most = top[0];
+        for (int axis = 1; axis < 3; axis++)
+            most = top[axis] > most ? top[axis] : most;
+        if (most <= TOP_BLOCKS || *levels == HEWN_MAX_LEVELS)
+            return 8 * shrink;
+    }
 }

@@ -16,4 +16,11 @@ hewn_result hewn_grid_lay(const hewn_extract_desc *desc, struct hewn_grid *out, 
 /* Bricks along an axis. */
 uint32_t hewn_grid_bricks(const struct hewn_grid *grid, int axis);
 
+/* Blocks of `shrink` bricks a side along the axes, and their product. */
+uint64_t hewn_grid_blocks(const struct hewn_grid *grid, uint32_t shrink, uint32_t blocks[3]);
+
+/* Levels of culling, blocks of the coarsest, and the cells along their sides. Bricks come in the order of their blocks,
+ * so that vertices do in every kind of culling. */
+uint32_t hewn_grid_levels(const struct hewn_grid *grid, uint32_t *levels, uint32_t top[3]);
+
 #endif
