@@ -53,7 +53,8 @@ static void test_shipped_scenes(void **state)
         char *report = mesh_scene(folder, run_path(scenes, entry->d_name), "scene.glb", "64", "LP_NUM_THREADS");
         assert_proven(report, entry->d_name);
         assert_false(json_bool(report, "left_bounds"));
-        assert_true(json_number(report, "suspect_cells") == 0);
+        bool specks = strcmp(entry->d_name, "random.lua") == 0; /* shapes smaller than a cell here, and lost ones */
+        assert_true((json_number(report, "suspect_cells") > 0) == specks);
         assert_true(json_number(report, "undefined_cells") == 0);
         static const char *const others[] = {"mc", "mc33", "nets"};
         assert_string_equal(json_string(report, "method"), "dc");

@@ -19,11 +19,9 @@ typedef struct pose {
 static pose random_pose(uint64_t *random)
 {
     pose p = {.angle = dual_between(random, 0.2, 3)};
-    double size = 0;
     for (int k = 0; k < 3; k++) {
         p.axis[k] = dual_between(random, -1, 1);
         p.place[k] = dual_between(random, -0.1, 0.1);
-        size += p.axis[k] * p.axis[k];
     }
     dual_turn(p.axis, p.angle, p.turn);
     return p;
