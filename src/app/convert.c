@@ -1,8 +1,5 @@
-#include <stdio.h>
-
-#include "app/app.h"
 #include "app/file_arguments.h"
-#include "app/record.h"
+#include "app/file_command.h"
 #include "app/smooth_arguments.h"
 
 static const hewn_option options[] = {
@@ -19,35 +16,25 @@ static const hewn_option options[] = {
     HEWN_OPTION_HELP,
 };
 
+static hewn_result read(const hewn_arguments *arguments, hewn_file_steps *steps, hewn_file_job_desc *desc,
+                        hewn_error *error)
+{
+    const char *method = hewn_arguments_value(arguments, "smooth");
+    if (!method)
+        return HEWN_OK;
+    desc->smooth = &steps->smooth;
+    return hewn_smooth_method_parse(method, "--smooth", &steps->smooth.desc.method, error);
+}
+
+static void print(const hewn_file_job_desc *desc, const hewn_file_report *report)
+{
+    if (desc->smooth)
+        hewn_smooth_print(report);
+}
+
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
-    hewn_error error = {0};
-    hewn_file_arguments file;
-    hewn_file_smooth smooth = {0};
-    const char *method = hewn_arguments_value(arguments, "smooth");
-    hewn_result result = hewn_file_arguments_read(arguments, &file, &error);
-    if (result == HEWN_OK && method)
-        result = hewn_smooth_method_parse(method, "--smooth", &smooth.desc.method, &error);
-    if (result != HEWN_OK)
-        return hewn_report_misuse(command, &error);
-    hewn_signals_catch();
-    hewn_progress progress = hewn_progress_begin(file.quiet);
-    hewn_file_report report;
-    file.desc.smooth = method ? &smooth : NULL;
-    file.desc.progress = &progress;
-    file.desc.began = hewn_started();
-    result = hewn_file_convert(&file.desc, &report, &error);
-    hewn_progress_end();
-    if (result != HEWN_OK)
-        return hewn_report_misuse(command, &error);
-    if (!file.quiet) {
-        hewn_record_print(&report);
-        if (method)
-            hewn_smooth_print(&report);
-        hewn_notes_print(&file.desc, &report);
-    }
-    hewn_file_report_destroy(&report);
-    return 0;
+    return hewn_file_command_run(command, arguments, &(hewn_file_command){read, print});
 }
 
 const hewn_command hewn_command_convert = {

@@ -3,11 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/app.h"
 #include "app/certificate.h"
 #include "app/file_arguments.h"
+#include "app/file_command.h"
 #include "app/number.h"
-#include "app/record.h"
 #include "base/error.h"
 #include "pipeline/repair_counts.h"
 
@@ -139,38 +138,23 @@ static void print_counts(const hewn_repair_report *repair)
 
 static void print_summary(const hewn_file_job_desc *desc, const hewn_file_report *report)
 {
-    hewn_record_print(report);
+    (void)desc;
     print_counts(&report->repair);
     hewn_certificate_summarise(report->check, report->conversion.unit_after, stderr);
-    hewn_notes_print(desc, report);
+}
+
+static hewn_result read(const hewn_arguments *arguments, hewn_file_steps *steps, hewn_file_job_desc *desc,
+                        hewn_error *error)
+{
+    desc->repair = &steps->repair;
+    desc->check = true;
+    desc->skip_self_intersections = hewn_arguments_has(arguments, "no-self-intersections");
+    return read_repair(arguments, &steps->repair, error);
 }
 
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
-    hewn_error error = {0};
-    hewn_file_arguments file;
-    hewn_repair_desc repair;
-    hewn_result result = hewn_file_arguments_read(arguments, &file, &error);
-    if (result == HEWN_OK)
-        result = read_repair(arguments, &repair, &error);
-    if (result != HEWN_OK)
-        return hewn_report_misuse(command, &error);
-    hewn_signals_catch();
-    hewn_progress progress = hewn_progress_begin(file.quiet);
-    hewn_file_report report;
-    file.desc.repair = &repair;
-    file.desc.check = true;
-    file.desc.skip_self_intersections = hewn_arguments_has(arguments, "no-self-intersections");
-    file.desc.progress = &progress;
-    file.desc.began = hewn_started();
-    result = hewn_file_convert(&file.desc, &report, &error);
-    hewn_progress_end();
-    if (result != HEWN_OK)
-        return hewn_report_misuse(command, &error);
-    if (!file.quiet)
-        print_summary(&file.desc, &report);
-    hewn_file_report_destroy(&report);
-    return 0;
+    return hewn_file_command_run(command, arguments, &(hewn_file_command){read, print_summary});
 }
 
 const hewn_command hewn_command_repair = {

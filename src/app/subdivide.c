@@ -2,10 +2,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/app.h"
 #include "app/file_arguments.h"
+#include "app/file_command.h"
 #include "app/number.h"
-#include "app/record.h"
 #include "base/error.h"
 
 static const hewn_option options[] = {
@@ -98,9 +97,11 @@ static hewn_result read_levels(const hewn_arguments *arguments, hewn_subdivide_d
     return HEWN_OK;
 }
 
-static hewn_result read_subdivide(const hewn_arguments *arguments, hewn_file_subdivide *out, hewn_error *error)
+static hewn_result read_subdivide(const hewn_arguments *arguments, hewn_file_steps *steps, hewn_file_job_desc *desc,
+                                  hewn_error *error)
 {
-    *out = (hewn_file_subdivide){0};
+    hewn_file_subdivide *out = &steps->subdivide;
+    desc->subdivide = out;
     const char *angle = hewn_arguments_value(arguments, "crease-angle");
     const char *adaptive = hewn_arguments_value(arguments, "adaptive");
     HEWN_TRY(read_rules(arguments, &out->desc, error));
@@ -120,8 +121,9 @@ static hewn_result read_subdivide(const hewn_arguments *arguments, hewn_file_sub
 
 /* --- the command ------------------------------------------------------------------------------------------------- */
 
-static void print_summary(const hewn_file_report *report)
+static void print_summary(const hewn_file_job_desc *desc, const hewn_file_report *report)
 {
+    (void)desc;
     const hewn_subdivide_report *done = &report->subdivide;
     fprintf(stderr, "  %s, %" PRIu32 " %s from %" PRIu64 " faces", hewn_scheme_name(report->scheme), done->levels,
             done->levels == 1 ? "level" : "levels", report->faces_before);
@@ -136,31 +138,7 @@ static void print_summary(const hewn_file_report *report)
 
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
-    hewn_error error = {0};
-    hewn_file_arguments file;
-    hewn_file_subdivide subdivide;
-    hewn_result result = hewn_file_arguments_read(arguments, &file, &error);
-    if (result == HEWN_OK)
-        result = read_subdivide(arguments, &subdivide, &error);
-    if (result != HEWN_OK)
-        return hewn_report_misuse(command, &error);
-    hewn_signals_catch();
-    hewn_progress progress = hewn_progress_begin(file.quiet);
-    hewn_file_report report;
-    file.desc.subdivide = &subdivide;
-    file.desc.progress = &progress;
-    file.desc.began = hewn_started();
-    result = hewn_file_convert(&file.desc, &report, &error);
-    hewn_progress_end();
-    if (result != HEWN_OK)
-        return hewn_report_misuse(command, &error);
-    if (!file.quiet) {
-        hewn_record_print(&report);
-        print_summary(&report);
-        hewn_notes_print(&file.desc, &report);
-    }
-    hewn_file_report_destroy(&report);
-    return 0;
+    return hewn_file_command_run(command, arguments, &(hewn_file_command){read_subdivide, print_summary});
 }
 
 const hewn_command hewn_command_subdivide = {
