@@ -6,18 +6,15 @@
 #include "base/error.h"
 #include "iso/dual_cells.h"
 #include "iso/extractor.h"
+#include "iso/fixed_kernel.h"
 
 extern const char hewn_text_iso_head[], hewn_text_nets_vertices[], hewn_text_dual_vertices[];
 
-#define HEWN_SHADER(name)                                                                                              \
-    extern const unsigned char hewn_shader_##name[];                                                                   \
-    extern const size_t hewn_shader_##name##_size;
-HEWN_SHADER(dual_link)
-HEWN_SHADER(dual_classify)
-HEWN_SHADER(dual_spread)
-HEWN_SHADER(dual_quads)
-HEWN_SHADER(dual_fans)
-#undef HEWN_SHADER
+HEWN_SHADER(dual_link);
+HEWN_SHADER(dual_classify);
+HEWN_SHADER(dual_spread);
+HEWN_SHADER(dual_quads);
+HEWN_SHADER(dual_fans);
 
 /* --- programs ----------------------------------------------------------------------------------------------------- */
 
@@ -34,33 +31,14 @@ static hewn_result create_table(hewn_extractor *extractor, hewn_error *error)
 static hewn_result create_fixed(hewn_extractor *extractor, hewn_error *error)
 {
     hewn_dual_programs *own = &extractor->dual;
-    const struct {
-        const char *name;
-        const unsigned char *spirv;
-        size_t bytes, push;
-        bool table;
-        hewn_program **place;
-    } kernels[] = {
-        {"dual_link", hewn_shader_dual_link, hewn_shader_dual_link_size, sizeof(struct hewn_dual_link_push), false,
-         &own->link},
-        {"dual_classify", hewn_shader_dual_classify, hewn_shader_dual_classify_size,
-         sizeof(struct hewn_dual_classify_push), true, &own->classify},
-        {"dual_spread", hewn_shader_dual_spread, hewn_shader_dual_spread_size, sizeof(struct hewn_dual_spread_push),
-         true, &own->spread},
-        {"dual_quads", hewn_shader_dual_quads, hewn_shader_dual_quads_size, sizeof(struct hewn_dual_quad_push), false,
-         &own->quads},
-        {"dual_fans", hewn_shader_dual_fans, hewn_shader_dual_fans_size, sizeof(struct hewn_dual_fan_push), false,
-         &own->fans},
+    const hewn_fixed_kernel kernels[] = {
+        HEWN_FIXED_KERNEL(dual_link, dual_link_push, false, &own->link),
+        HEWN_FIXED_KERNEL(dual_classify, dual_classify_push, true, &own->classify),
+        HEWN_FIXED_KERNEL(dual_spread, dual_spread_push, true, &own->spread),
+        HEWN_FIXED_KERNEL(dual_quads, dual_quad_push, false, &own->quads),
+        HEWN_FIXED_KERNEL(dual_fans, dual_fan_push, false, &own->fans),
     };
-    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
-        hewn_program_desc desc = {.name = kernels[i].name,
-                                  .spirv = (const uint32_t *)(const void *)kernels[i].spirv,
-                                  .spirv_bytes = kernels[i].bytes,
-                                  .push_bytes = (uint32_t)kernels[i].push,
-                                  .uniforms = kernels[i].table};
-        HEWN_TRY(hewn_program_create(extractor->device, &desc, kernels[i].place, error));
-    }
-    return HEWN_OK;
+    return hewn_fixed_kernels_create(extractor->device, kernels, sizeof kernels / sizeof *kernels, error);
 }
 
 static hewn_program **vertex_program(hewn_dual_programs *own, hewn_method method)

@@ -4,100 +4,76 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "iso/fixed_kernel.h"
 #include "iso/marching_cubes.h"
 #include "shared/lists.h"
 
 extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_suspects[], hewn_text_vertices[],
     hewn_text_choose[], hewn_text_keep_lists[], hewn_text_vertices_listed[];
 
-#define HEWN_SHADER(name)                                                                                              \
-    extern const unsigned char hewn_shader_##name[];                                                                   \
-    extern const size_t hewn_shader_##name##_size;
-HEWN_SHADER(compact)
-HEWN_SHADER(cuts)
-HEWN_SHADER(link)
-HEWN_SHADER(classify)
-HEWN_SHADER(remote)
-HEWN_SHADER(spread)
-HEWN_SHADER(triangles)
-HEWN_SHADER(gather)
-#undef HEWN_SHADER
+HEWN_SHADER(compact);
+HEWN_SHADER(cuts);
+HEWN_SHADER(link);
+HEWN_SHADER(classify);
+HEWN_SHADER(remote);
+HEWN_SHADER(spread);
+HEWN_SHADER(triangles);
+HEWN_SHADER(gather);
 
 static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *error)
 {
-    const bool listed = hewn_code_is_listed(extractor->code);
+    enum { STRAIGHT = 1, LISTED = 2 };
+    const int wanted = hewn_code_is_listed(extractor->code) ? LISTED : STRAIGHT;
     const struct {
         hewn_kernel_desc desc;
         hewn_program **place;
-        int only; /* 1: straight code, 2: lists */
+        int made_for; /* straight code, lists or both */
     } kernels[] = {
         {{"cull", hewn_text_iso_head, hewn_text_cull, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_cull_push)},
          &extractor->cull,
-         1},
+         STRAIGHT},
         {{"choose", hewn_text_iso_head, hewn_text_choose, HEWN_FLAVOUR_CHOICES | HEWN_FLAVOUR_TOGETHER,
           sizeof(struct hewn_choose_push)},
          &extractor->choose,
-         2},
+         LISTED},
         {{"keep_lists", hewn_text_iso_head, hewn_text_keep_lists, HEWN_FLAVOUR_CHOICES, sizeof(struct hewn_keep_push)},
          &extractor->keep_lists,
-         2},
+         LISTED},
         {{"signs", hewn_text_iso_head, hewn_text_signs, HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_TOGETHER,
           sizeof(struct hewn_sign_push)},
          &extractor->signs,
-         0},
+         STRAIGHT | LISTED},
         {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT,
           sizeof(struct hewn_vertex_push)},
          &extractor->vertices,
-         1},
+         STRAIGHT},
         {{"vertices_listed", hewn_text_iso_head, hewn_text_vertices_listed, HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_TOGETHER,
           sizeof(struct hewn_listed_vertex_push)},
          &extractor->vertices,
-         2},
+         LISTED},
         {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_suspect_push)},
          &extractor->suspects.find,
-         0},
+         STRAIGHT | LISTED},
     };
     for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
-        if (kernels[i].only != (listed ? 1 : 2))
+        if (kernels[i].made_for & wanted)
             HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &kernels[i].desc, kernels[i].place, error));
     return HEWN_OK;
 }
 
 static hewn_result create_fixed_programs(hewn_extractor *extractor, hewn_error *error)
 {
-    const struct {
-        const char *name;
-        const unsigned char *spirv;
-        size_t bytes;
-        size_t push;
-        bool table; /* reads the marching cubes table as uniforms */
-        hewn_program **place;
-    } kernels[] = {
-        {"compact", hewn_shader_compact, hewn_shader_compact_size, sizeof(struct hewn_compact_push), false,
-         &extractor->compact},
-        {"gather", hewn_shader_gather, hewn_shader_gather_size, sizeof(struct hewn_gather_push), false,
-         &extractor->gather},
-        {"link", hewn_shader_link, hewn_shader_link_size, sizeof(struct hewn_link_push), false, &extractor->link},
-        {"classify", hewn_shader_classify, hewn_shader_classify_size, sizeof(struct hewn_classify_push), true,
-         &extractor->classify},
-        {"cuts", hewn_shader_cuts, hewn_shader_cuts_size, sizeof(struct hewn_cut_push), false,
-         &extractor->suspects.cuts},
-        {"remote", hewn_shader_remote, hewn_shader_remote_size, sizeof(struct hewn_remote_push), false,
-         &extractor->suspects.remote},
-        {"spread", hewn_shader_spread, hewn_shader_spread_size, sizeof(struct hewn_spread_push), true,
-         &extractor->spread},
-        {"triangles", hewn_shader_triangles, hewn_shader_triangles_size, sizeof(struct hewn_triangle_push), true,
-         &extractor->triangles},
+    const hewn_fixed_kernel kernels[] = {
+        HEWN_FIXED_KERNEL(compact, compact_push, false, &extractor->compact),
+        HEWN_FIXED_KERNEL(gather, gather_push, false, &extractor->gather),
+        HEWN_FIXED_KERNEL(link, link_push, false, &extractor->link),
+        HEWN_FIXED_KERNEL(classify, classify_push, true, &extractor->classify),
+        HEWN_FIXED_KERNEL(cuts, cut_push, false, &extractor->suspects.cuts),
+        HEWN_FIXED_KERNEL(remote, remote_push, false, &extractor->suspects.remote),
+        HEWN_FIXED_KERNEL(spread, spread_push, true, &extractor->spread),
+        HEWN_FIXED_KERNEL(triangles, triangle_push, true, &extractor->triangles),
     };
-    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
-        hewn_program_desc desc = {.name = kernels[i].name,
-                                  .spirv = (const uint32_t *)(const void *)kernels[i].spirv,
-                                  .spirv_bytes = kernels[i].bytes,
-                                  .push_bytes = (uint32_t)kernels[i].push,
-                                  .uniforms = kernels[i].table};
-        HEWN_TRY(hewn_program_create(extractor->device, &desc, kernels[i].place, error));
-    }
-    return HEWN_OK;
+    return hewn_fixed_kernels_create(extractor->device, kernels, sizeof kernels / sizeof *kernels, error);
 }
 
 static hewn_result create_table(hewn_extractor *extractor, hewn_error *error)

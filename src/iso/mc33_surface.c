@@ -4,18 +4,15 @@
 
 #include "base/error.h"
 #include "iso/extractor.h"
+#include "iso/fixed_kernel.h"
 #include "iso/mc33.h"
 
 extern const char hewn_text_iso_head[], hewn_text_mc33_decide[], hewn_text_mc33_centres[];
 
-#define HEWN_SHADER(name)                                                                                              \
-    extern const unsigned char hewn_shader_##name[];                                                                   \
-    extern const size_t hewn_shader_##name##_size;
-HEWN_SHADER(mc33_ask)
-HEWN_SHADER(mc33_count)
-HEWN_SHADER(mc33_spread)
-HEWN_SHADER(mc33_triangles)
-#undef HEWN_SHADER
+HEWN_SHADER(mc33_ask);
+HEWN_SHADER(mc33_count);
+HEWN_SHADER(mc33_spread);
+HEWN_SHADER(mc33_triangles);
 
 /* --- programs ----------------------------------------------------------------------------------------------------- */
 
@@ -35,28 +32,13 @@ static hewn_result create_table(hewn_extractor *extractor, hewn_error *error)
 static hewn_result create_fixed(hewn_extractor *extractor, hewn_error *error)
 {
     hewn_mc33_programs *own = &extractor->mc33;
-    const struct {
-        const char *name;
-        const unsigned char *spirv;
-        size_t bytes, push;
-        hewn_program **place;
-    } kernels[] = {
-        {"mc33_ask", hewn_shader_mc33_ask, hewn_shader_mc33_ask_size, sizeof(struct hewn_mc33_ask_push), &own->ask},
-        {"mc33_count", hewn_shader_mc33_count, hewn_shader_mc33_count_size, sizeof(struct hewn_mc33_count_push),
-         &own->count},
-        {"mc33_spread", hewn_shader_mc33_spread, hewn_shader_mc33_spread_size, sizeof(struct hewn_mc33_spread_push),
-         &own->spread},
-        {"mc33_triangles", hewn_shader_mc33_triangles, hewn_shader_mc33_triangles_size,
-         sizeof(struct hewn_triangle_push), &own->triangles},
+    const hewn_fixed_kernel kernels[] = {
+        HEWN_FIXED_KERNEL(mc33_ask, mc33_ask_push, false, &own->ask),
+        HEWN_FIXED_KERNEL(mc33_count, mc33_count_push, false, &own->count),
+        HEWN_FIXED_KERNEL(mc33_spread, mc33_spread_push, false, &own->spread),
+        HEWN_FIXED_KERNEL(mc33_triangles, triangle_push, false, &own->triangles),
     };
-    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
-        hewn_program_desc desc = {.name = kernels[i].name,
-                                  .spirv = (const uint32_t *)(const void *)kernels[i].spirv,
-                                  .spirv_bytes = kernels[i].bytes,
-                                  .push_bytes = (uint32_t)kernels[i].push};
-        HEWN_TRY(hewn_program_create(extractor->device, &desc, kernels[i].place, error));
-    }
-    return HEWN_OK;
+    return hewn_fixed_kernels_create(extractor->device, kernels, sizeof kernels / sizeof *kernels, error);
 }
 
 static hewn_result create_all(hewn_extractor *extractor, hewn_error *error)
