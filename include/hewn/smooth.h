@@ -13,8 +13,8 @@ typedef enum hewn_smooth_method {
     HEWN_SMOOTH_LAPLACIAN, /* to the mean of the neighbours: shrinks */
     HEWN_SMOOTH_COTAN,     /* mean curvature flow in small steps (Meyer, Desbrun, Schroeder, Barr 2003) */
     HEWN_SMOOTH_IMPLICIT,  /* the same by backward Euler (Desbrun, Meyer, Schroeder, Barr 1999): any step is stable */
-    HEWN_SMOOTH_BILATERAL, /* normals that agree are averaged, then vertices follow (Zheng, Fu, Au, Tai 2011; Sun,
-                              Rosin, Martin, Langbein 2007): sharp edges stay sharp */
+    HEWN_SMOOTH_BILATERAL, /* normals that agree are averaged, and vertices follow (Zheng, Fu, Au, Tai 2011; Zhang and
+                              others 2015; Sun, Rosin, Martin, Langbein 2007): sharp edges stay sharp */
     HEWN_SMOOTH_HC,        /* Vollmer, Mencl, Mueller 1999, 'Improved Laplacian smoothing of noisy surface meshes' */
     HEWN_SMOOTH_COUNT
 } hewn_smooth_method;
@@ -25,7 +25,7 @@ HEWN_API bool hewn_smooth_method_find(const char *name, hewn_smooth_method *out)
 
 /* What to do; zero everywhere smooths by ten steps of Taubin's method.
  *
- * iterations: steps; 0 stands for 10, for one step of IMPLICIT, and for 6 of BILATERAL.
+ * iterations: steps; 0 stands for 10, for one step of IMPLICIT, and for 8 of BILATERAL.
  *
  * strength (TAUBIN, LAPLACIAN): the share of the way to the mean of its neighbours that a vertex goes in a step, above
  * 0 to 1; 0 stands for 0.5. passband (TAUBIN): the eigenvalue of the mesh's normalised Laplacian, 0 to 2, below which
@@ -36,8 +36,8 @@ HEWN_API bool hewn_smooth_method_find(const char *name, hewn_smooth_method *out)
  * that is for a time of step^2 / 2. n steps reach sqrt(n) as far. 0 stands for the mean edge. COTAN goes less far at
  * vertices where so long a step would not be stable, and counts them.
  *
- * angle (BILATERAL): degrees; faces whose normals differ by much more do not touch each other. 0 stands for 15. radius:
- * the same for the distance between faces; 0 stands for the mean one of neighbours.
+ * angle (BILATERAL): degrees; faces whose normals, noise aside, differ by much more do not mix. 0 stands for 20.
+ * radius: the same for the distance between faces; 0 stands for the mean one of neighbours.
  *
  * original, push (HC): how much a vertex is drawn to where it was at the start (against the step before), and how much
  * of that pull it takes from itself (against its neighbours), 0 to 1. Negative or both zero: 0 and 0.5.

@@ -7,7 +7,7 @@ static const hewn_option options[] = {
     {0, "method", "NAME",
      "taubin (hardly shrinks), laplacian, cotan (mean curvature flow), implicit (the same, stable for any step), "
      "bilateral (keeps sharp edges) or hc. Default: taubin."},
-    {0, "iterations", "N", "Take N steps. Default: 10; implicit 1; bilateral 6."},
+    {0, "iterations", "N", "Take N steps. Default: 10; implicit 1; bilateral 8."},
     {0, "strength", "S",
      "taubin, laplacian: go this share of the way to the mean of the neighbours in a step, up to 1. Default: 0.5."},
     {0, "passband", "K",
@@ -15,7 +15,7 @@ static const hewn_option options[] = {
     {0, "step", "LENGTH",
      "cotan, implicit: smooth as a Gaussian of this deviation in each step, in the input's unit. Default: the mean "
      "edge."},
-    {0, "angle", "DEGREES", "bilateral: faces that bend by much more do not mix. Default: 15."},
+    {0, "angle", "DEGREES", "bilateral: faces that bend by much more do not mix. Default: 20."},
     {0, "radius", "LENGTH",
      "bilateral: faces that are much further apart do not mix. Default: the mean distance of neighbours."},
     {0, "original", "A", "hc: draw vertices to where they were at first, from 0 to 1. Default: 0."},

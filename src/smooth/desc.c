@@ -65,7 +65,7 @@ static hewn_result settle_hc(hewn_smooth_desc *desc, hewn_error *error)
 
 static uint32_t default_iterations(hewn_smooth_method method)
 {
-    return method == HEWN_SMOOTH_IMPLICIT ? 1 : method == HEWN_SMOOTH_BILATERAL ? 6 : 10;
+    return method == HEWN_SMOOTH_IMPLICIT ? 1 : method == HEWN_SMOOTH_BILATERAL ? 8 : 10;
 }
 
 hewn_result hewn_smooth_settle(hewn_smooth_desc *desc, hewn_error *error)
@@ -81,7 +81,7 @@ hewn_result hewn_smooth_settle(hewn_smooth_desc *desc, hewn_error *error)
     case HEWN_SMOOTH_LAPLACIAN:
     case HEWN_SMOOTH_TAUBIN: HEWN_TRY(settle_number(&desc->strength, "strength", 0.5, 0, 1, error)); break;
     case HEWN_SMOOTH_BILATERAL:
-        HEWN_TRY(settle_number(&desc->angle, "angle", 15, 0, 180, error));
+        HEWN_TRY(settle_number(&desc->angle, "angle", 20, 0, 180, error));
         if (desc->radius != 0)
             HEWN_TRY(settle_number(&desc->radius, "radius", 0, 0, INFINITY, error));
         break;

@@ -132,7 +132,8 @@ static double noise_left(const hewn_model *clean, const double *positions)
     return sqrt(sum / (3 * (double)clean->face_count));
 }
 
-static void try_noise(const hewn_model *clean, double share, uint64_t seed, bool must)
+/* Noise of `share` edges: how much of it may be left, and how far sharp edges may change, in degrees. */
+static void try_noise(const hewn_model *clean, double share, uint64_t seed, double most_left, double most_changed)
 {
     random_state random = {seed};
     hewn_model noisy = *clean;
@@ -151,12 +152,10 @@ static void try_noise(const hewn_model *clean, double share, uint64_t seed, bool
         "# noise of %.1f edges: %.3f left by bilateral, %.3f by Laplacian; %zu sharp edges change by %.2f and "
         "%.2f degrees\n",
         share, left / start, noise_left(clean, laplacian) / start, sharp_count, kept, blunted);
-    if (must) {
-        assert_true(sharp_count > 100);
-        assert_true(kept < 3);
-        assert_true(blunted > 15);
-        assert_true(left < start / 2.9);
-    }
+    assert_true(sharp_count > 100);
+    assert_true(kept < most_changed);
+    assert_true(blunted > 15);
+    assert_true(left < most_left * start);
     free(sharp);
     hewn_free(noisy.positions);
     hewn_free(bilateral);
@@ -170,8 +169,8 @@ static void test_machine_part(void **state)
     if (!read_data("mesh-cad/fandisk.off", &clean))
         skip();
     for (uint64_t seed = 1; seed <= 3; seed++)
-        try_noise(&clean, 0.1, seed, true);
-    try_noise(&clean, 0.3, 1, false);
+        try_noise(&clean, 0.1, seed, 1.0 / 3, 3);
+    try_noise(&clean, 0.3, 1, 0.4, 10);
     hewn_model_destroy(&clean);
 }
 
