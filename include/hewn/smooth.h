@@ -23,6 +23,14 @@ typedef enum hewn_smooth_method {
 HEWN_API const char *hewn_smooth_method_name(hewn_smooth_method method);
 HEWN_API bool hewn_smooth_method_find(const char *name, hewn_smooth_method *out);
 
+/* Whether closed, oriented components get the volume back that they had, by an offset along their normals of what is
+ * free to move. */
+typedef enum hewn_smooth_volume {
+    HEWN_SMOOTH_VOLUME_DEFAULT, /* kept by TAUBIN, which is meant to keep shapes as large as they are; else free */
+    HEWN_SMOOTH_VOLUME_KEPT,
+    HEWN_SMOOTH_VOLUME_FREE
+} hewn_smooth_volume;
+
 /* What to do; zero everywhere smooths by ten steps of Taubin's method.
  *
  * iterations: steps; 0 stands for 10, for one step of IMPLICIT, and for 8 of BILATERAL.
@@ -46,9 +54,7 @@ HEWN_API bool hewn_smooth_method_find(const char *name, hewn_smooth_method *out)
  * not exactly two such edges meet it stays. COTAN and IMPLICIT never move it. lock_boundary makes it stay in any case;
  * lock_angle above 0 does so with both ends of edges whose faces bend by more than so many degrees; `labels`, one a
  * face, with vertices where faces of different labels meet. `freedom`, one a vertex from 0 (stays) to 1, scales how far
- * each moves. Vertices without faces stay.
- *
- * keep_volume moves what is free along its normals until each closed, oriented component has the volume that it had. */
+ * each moves. Vertices without faces stay. */
 typedef struct hewn_smooth_desc {
     hewn_smooth_method method;
     uint32_t iterations;
@@ -62,7 +68,7 @@ typedef struct hewn_smooth_desc {
     double lock_angle;
     const int32_t *labels;
     const double *freedom;
-    bool keep_volume;
+    hewn_smooth_volume volume;
     const hewn_progress *progress; /* or NULL; the stage is "smooth" */
 } hewn_smooth_desc;
 HEWN_API hewn_smooth_desc hewn_smooth_desc_default(void);

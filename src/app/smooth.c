@@ -23,7 +23,8 @@ static const hewn_option options[] = {
     {0, "lock", "LIST",
      "What stays, with commas between: boundary, features:ANGLE (edges that bend by more), labels (where faces differ "
      "in label, material, group or object)."},
-    {0, "keep-volume", NULL, "Give each closed component its volume back by an offset."},
+    {0, "keep-volume", NULL, "Give each closed component its volume back by an offset. taubin does so by default."},
+    {0, "free-volume", NULL, "Do not."},
     {0, "mask", "NAME", "Scale each vertex' move by this vertex attribute, from 0 to 1 (bytes: to 255)."},
     HEWN_OPTIONS_FRAME,
     HEWN_OPTION_FROM,

@@ -74,6 +74,10 @@ hewn_result hewn_smooth_settle(hewn_smooth_desc *desc, hewn_error *error)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no smoothing method %d", (int)desc->method);
     if (desc->iterations == 0)
         desc->iterations = default_iterations(desc->method);
+    if ((unsigned)desc->volume > HEWN_SMOOTH_VOLUME_FREE)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no way %d to treat volumes", (int)desc->volume);
+    if (desc->volume == HEWN_SMOOTH_VOLUME_DEFAULT)
+        desc->volume = desc->method == HEWN_SMOOTH_TAUBIN ? HEWN_SMOOTH_VOLUME_KEPT : HEWN_SMOOTH_VOLUME_FREE;
     if (!(desc->lock_angle >= 0 && desc->lock_angle <= 180))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the angle of features must be from 0 to 180 degrees, not %g",
                          desc->lock_angle);
