@@ -15,6 +15,7 @@
 #include "hewn/model.h"
 #include "hewn/repair.h"
 #include "hewn/scene.h"
+#include "hewn/simplify.h"
 #include "hewn/smooth.h"
 #include "hewn/subdivide.h"
 #include "hewn/triangles.h"
