@@ -41,6 +41,10 @@ static void take_faces(simplify_work *work, const hewn_polygons *triangles)
         work->face_origins[count++] = (uint32_t)f;
     }
     work->face_count = work->live_faces = count;
+    for (uint32_t h = 0; work->wedge && h < 3 * count; h++) {
+        const size_t corner = 3 * (size_t)work->face_origins[h / 3] + h % 3;
+        work->wedge[h] = work->wedges->corners ? work->wedges->corners[corner] : triangles->corners[corner];
+    }
 }
 
 static void set_apart(simplify_work *work, uint32_t v)
@@ -177,7 +181,8 @@ static hewn_result allocate(simplify_work *work, const hewn_polygons *triangles,
     work->tail = hewn_alloc(halves, sizeof *work->tail);
     work->twin = hewn_alloc(halves, sizeof *work->twin);
     work->face_origins = hewn_alloc(triangles->face_count, sizeof *work->face_origins);
-    if (work->positions && work->half && work->rank && work->origins && work->into && work->tail && work->twin &&
+    work->wedge = work->wedges ? hewn_alloc(halves, sizeof *work->wedge) : NULL;
+    if ((work->wedge || !work->wedges) && work->positions && work->half && work->rank && work->origins && work->into && work->tail && work->twin &&
         work->face_origins)
         return HEWN_OK;
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying %llu triangles",
@@ -221,5 +226,6 @@ void hewn_simplify_release(simplify_work *work)
     hewn_free(work->key);
     hewn_free(work->flags);
     hewn_free(work->face_origins);
+    hewn_free(work->wedge);
     *work = (simplify_work){0};
 }

@@ -52,13 +52,20 @@ simplify_plan hewn_simplify_plan(const simplify_work *work, uint32_t half)
     const bool feature = work->flags[half] & SIMPLIFY_FEATURE;
     if (low >= SIMPLIFY_CORNER || high == SIMPLIFY_APART || (low == SIMPLIFY_CREASE && !feature))
         return plan;
-    simplify_quadric q = work->quadrics[a];
+    simplify_quadric q = work->quadrics[a], all;
     simplify_quadric_add(&q, &work->quadrics[b]);
+    all = q;
+    const bool counted = work->wedges && work->wedges->counted > 0;
+    const simplify_pairs pairs = counted ? hewn_simplify_pair(work, half, a) : (simplify_pairs){0};
+    if (counted && low == high)
+        hewn_simplify_add_pairs(work, &pairs, &all);
     if (low < high)
         try_place(&q, simplify_at(work, b), &plan);
     else
-        place(&q, simplify_at(work, a), simplify_at(work, b), &plan);
-    plan.far = plan.cost > work->most * work->most * q.weight;
+        place(&all, simplify_at(work, a), simplify_at(work, b), &plan);
+    if (counted && low < high)
+        plan.cost += hewn_simplify_pairs_cost(work, &pairs, plan.at);
+    plan.far = !isinf(work->most) && simplify_quadric_value(&q, plan.at) > work->most * work->most * q.weight;
     return plan;
 }
 
@@ -218,10 +225,26 @@ static void stir(simplify_work *work, uint32_t v)
     } while (h != HEWN_NONE && h != first);
 }
 
+static void join_wedges(simplify_work *work, const simplify_plan *plan)
+{
+    const double *from = simplify_at(work, plan->kept), *to = simplify_at(work, plan->gone);
+    double whole[3], part[3];
+    simplify_between(from, to, whole);
+    simplify_between(from, plan->at, part);
+    const double length = simplify_dot(whole, whole);
+    double share = length > 0 ? simplify_dot(part, whole) / length : 0;
+    share = share < 0 ? 0 : share > 1 ? 1 : share;
+    const simplify_pairs pairs = hewn_simplify_pair(work, plan->half, plan->gone);
+    hewn_simplify_join_wedges(work, &pairs, plan->gone, plan->at, share,
+                              work->rank[plan->gone] < work->rank[plan->kept]);
+}
+
 uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan)
 {
     const uint32_t gone = plan->gone, kept = plan->kept, half = plan->half, twin = work->twin[half];
     uint32_t first = work->half[gone], h = first;
+    if (work->wedges)
+        join_wedges(work, plan);
     do {
         uint32_t turned = simplify_turn(work, h);
         work->tail[h] = kept;

@@ -21,6 +21,14 @@ static bool is_label_border(const simplify_work *work, uint32_t h)
     return labels && labels[work->face_origins[h / 3]] != labels[work->face_origins[work->twin[h] / 3]];
 }
 
+/* Whether corners that meet along an edge have different values. */
+static bool is_seam(const simplify_work *work, uint32_t h)
+{
+    const uint32_t g = work->twin[h];
+    return work->wedge && (work->wedge[h] != work->wedge[simplify_next(g)] ||
+                           work->wedge[simplify_next(h)] != work->wedge[g]);
+}
+
 /* What one edge is to its ends. */
 static void mark_edge(simplify_work *work, uint32_t h, double cosine)
 {
@@ -28,7 +36,7 @@ static void mark_edge(simplify_work *work, uint32_t h, double cosine)
     const bool boundary = work->twin[h] == HEWN_NONE;
     const bool border = !boundary && is_label_border(work, h);
     const bool bent = !boundary && desc->lock_angle > 0 && is_bent(work, h, cosine);
-    work->flags[h] = boundary || border ? SIMPLIFY_FEATURE : 0;
+    work->flags[h] = boundary || border || is_seam(work, h) ? SIMPLIFY_FEATURE : 0;
     if (!((boundary && desc->lock_boundary) || (border && desc->lock_labels) || bent))
         return;
     for (int end = 0; end < 2; end++) {
@@ -72,7 +80,9 @@ hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error)
             mark_edge(work, h, cosine);
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
-        if (work->desc->frozen && work->desc->frozen[work->origins[v]] && work->rank[v] < SIMPLIFY_LOCKED)
+        const uint32_t origin = work->origins[v];
+        const bool frozen = (work->desc->frozen && work->desc->frozen[origin]) || (work->frozen && work->frozen[origin]);
+        if (frozen && work->rank[v] < SIMPLIFY_LOCKED)
             work->rank[v] = SIMPLIFY_LOCKED;
         rank_vertex(work, v);
     }

@@ -140,7 +140,9 @@ static bool move_halves(simplify_work *work, const uint32_t *order, const uint32
     uint32_t *twin = hewn_alloc(count, sizeof *twin);
     float *key = work->key ? hewn_alloc(count, sizeof *key) : NULL;
     uint8_t *flags = work->flags ? hewn_alloc(count, sizeof *flags) : NULL;
-    bool done = place && tail && twin && (key || !work->key) && (flags || !work->flags);
+    uint32_t *wedge = work->wedge ? hewn_alloc(count, sizeof *wedge) : NULL;
+    bool done =
+        place && tail && twin && (key || !work->key) && (flags || !work->flags) && (wedge || !work->wedge);
     for (uint32_t f = 0; done && f < work->live_faces; f++)
         place[order[f]] = f;
 #pragma omp parallel for schedule(static)
@@ -154,6 +156,8 @@ static bool move_halves(simplify_work *work, const uint32_t *order, const uint32
                 key[h] = work->key[name];
             if (flags)
                 flags[h] = work->flags[name];
+            if (wedge)
+                wedge[h] = work->wedge[old];
         }
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < (done ? work->vertex_count : 0); v++)
@@ -164,15 +168,18 @@ static bool move_halves(simplify_work *work, const uint32_t *order, const uint32
         hewn_free(work->twin);
         hewn_free(work->key);
         hewn_free(work->flags);
+        hewn_free(work->wedge);
         work->tail = tail;
         work->twin = twin;
         work->key = key;
         work->flags = flags;
+        work->wedge = wedge;
     } else {
         hewn_free(tail);
         hewn_free(twin);
         hewn_free(key);
         hewn_free(flags);
+        hewn_free(wedge);
     }
     hewn_free(place);
     return done;

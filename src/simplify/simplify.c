@@ -1,10 +1,11 @@
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
 #include "mesh/cut.h"
 #include "simplify/desc.h"
+#include "simplify/promise.h"
+#include "simplify/run.h"
 #include "simplify/work.h"
 
 void hewn_simplified_destroy(hewn_simplified *simplified)
@@ -18,22 +19,24 @@ void hewn_simplified_destroy(hewn_simplified *simplified)
     *simplified = (hewn_simplified){0};
 }
 
+void hewn_simplify_result_release(simplify_result *result)
+{
+    hewn_simplified_destroy(&result->mesh);
+    hewn_free(result->into);
+    hewn_free(result->wedges);
+    hewn_free(result->values);
+    *result = (simplify_result){0};
+}
+
 /* --- what comes in ------------------------------------------------------------------------------------------------ */
 
-/* The input as triangles; what had to be made for that is owned. */
-typedef struct input {
-    hewn_polygons triangles;
-    uint32_t *corners;
-    uint32_t *faces;  /* the polygon of each triangle; NULL where it is the triangle's own number */
-    int32_t *labels; /* of each triangle */
-    hewn_simplify_desc desc;
-} input;
-
-static void release(input *in)
+static void release(simplify_input *in)
 {
     hewn_free(in->corners);
     hewn_free(in->faces);
     hewn_free(in->labels);
+    hewn_free(in->corner_wedges);
+    hewn_free(in->frozen);
 }
 
 static hewn_result check_polygons(const hewn_polygons *polygons, hewn_error *error)
@@ -50,46 +53,56 @@ static hewn_result check_polygons(const hewn_polygons *polygons, hewn_error *err
 }
 
 /* Triangles follow the order of the faces that they were cut from, corners - 2 each. */
-static hewn_result cut(const hewn_polygons *polygons, input *in, hewn_error *error)
+static hewn_result spread_faces(const hewn_polygons *polygons, simplify_input *in, hewn_error *error)
 {
-    in->triangles = *polygons;
-    if (!polygons->first)
-        return HEWN_OK;
-    uint64_t count, t = 0;
-    HEWN_TRY(hewn_cut_polygons(polygons, &in->corners, &count, in->desc.progress, error));
+    const uint64_t count = in->triangles.face_count;
     in->faces = hewn_alloc(count, sizeof *in->faces);
     in->labels = in->desc.labels ? hewn_alloc(count, sizeof *in->labels) : NULL;
     if (!in->faces || (in->desc.labels && !in->labels))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
-    for (uint64_t f = 0; f < polygons->face_count; f++)
+    for (uint64_t f = 0, t = 0; f < polygons->face_count; f++)
         for (uint64_t k = polygons->first[f] + 2; k < polygons->first[f + 1]; k++, t++) {
             in->faces[t] = (uint32_t)f;
             if (in->labels)
                 in->labels[t] = in->desc.labels[f];
         }
-    for (uint64_t c = 0; c < 3 * count; c++)
+    in->desc.labels = in->labels;
+    return HEWN_OK;
+}
+
+static hewn_result cut(const hewn_polygons *polygons, simplify_input *in, hewn_error *error)
+{
+    in->triangles = *polygons;
+    if (!polygons->first)
+        return HEWN_OK;
+    HEWN_TRY(hewn_cut_polygons(polygons, &in->corners, &in->triangles.face_count, in->desc.progress, error));
+    HEWN_TRY(spread_faces(polygons, in, error));
+    const uint64_t count = 3 * in->triangles.face_count;
+    if (in->wedges && in->wedges->corners) {
+        in->corner_wedges = hewn_alloc(count, sizeof *in->corner_wedges);
+        if (!in->corner_wedges)
+            return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
+        for (uint64_t c = 0; c < count; c++)
+            in->corner_wedges[c] = in->wedges->corners[in->corners[c]];
+    }
+    for (uint64_t c = 0; c < count; c++)
         in->corners[c] = polygons->corners[in->corners[c]];
     in->triangles.first = NULL;
     in->triangles.corners = in->corners;
-    in->triangles.face_count = count;
-    in->desc.labels = in->labels;
     return HEWN_OK;
 }
 
 /* --- one run ------------------------------------------------------------------------------------------------------ */
 
-static hewn_result hand_out(const simplify_work *work, const input *in, hewn_simplified *out, hewn_error *error)
+static hewn_result hand_out(simplify_work *work, const simplify_input *in, simplify_result *result, hewn_error *error)
 {
     const size_t verts = work->vertex_count, faces = work->face_count;
+    hewn_simplified *out = &result->mesh;
     *out = (hewn_simplified){.vertex_count = verts, .face_count = faces};
     out->positions = hewn_alloc(verts, 3 * sizeof *out->positions);
-    out->corners = hewn_alloc(faces, 3 * sizeof *out->corners);
-    out->vertex_origins = hewn_alloc(verts, sizeof *out->vertex_origins);
     out->face_origins = hewn_alloc(faces, sizeof *out->face_origins);
-    if (!out->positions || !out->corners || !out->vertex_origins || !out->face_origins)
+    if (!out->positions || !out->face_origins)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
-    memcpy(out->corners, work->tail, 3 * faces * sizeof *out->corners);
-    memcpy(out->vertex_origins, work->origins, verts * sizeof *out->vertex_origins);
     for (size_t f = 0; f < faces; f++)
         out->face_origins[f] = in->faces ? in->faces[work->face_origins[f]] : work->face_origins[f];
     for (size_t i = 0; i < 3 * verts; i++) { /* what has not moved keeps its bits */
@@ -99,82 +112,106 @@ static hewn_result hand_out(const simplify_work *work, const input *in, hewn_sim
         if (!isfinite(out->positions[i]))
             return hewn_fail(error, HEWN_LIMIT, "vertex %zu would not stay finite", i / 3);
     }
+    out->corners = work->tail;
+    out->vertex_origins = work->origins;
+    result->into = work->into;
+    result->wedges = work->wedge;
+    work->tail = work->origins = work->into = work->wedge = NULL;
     return HEWN_OK;
 }
 
-static void count_ranks(const simplify_work *work, hewn_simplify_report *report)
+static void describe(const simplify_work *work, const simplify_input *in, uint64_t target, hewn_simplify_report *report)
 {
+    report->triangles = work->face_count;
+    report->target = target;
+    report->reached = target == 0 || report->triangles <= target;
     report->locked_vertices = report->unwalked_vertices = 0;
     for (uint32_t v = 0; v < work->vertex_count; v++) {
-        report->locked_vertices += work->rank[v] == SIMPLIFY_LOCKED;
         report->unwalked_vertices += work->rank[v] == SIMPLIFY_APART;
+        report->locked_vertices += work->rank[v] == SIMPLIFY_LOCKED;
     }
+    (void)in;
 }
 
-/* `into` is handed to the caller. */
-static hewn_result run_once(const input *in, double most, hewn_simplified *out, uint32_t **into,
-                            hewn_simplify_report *report, hewn_error *error)
+static hewn_result prepare(simplify_work *work, const simplify_input *in, hewn_simplify_report *report,
+                           hewn_error *error)
 {
-    simplify_work work = {.desc = &in->desc};
-    hewn_result result = hewn_simplify_build(&work, &in->triangles, error);
+    HEWN_TRY(hewn_simplify_build(work, &in->triangles, error));
+    report->dropped_faces = in->triangles.face_count - work->face_count;
+    report->dropped_vertices = in->triangles.vertex_count - work->live_vertices;
+    HEWN_TRY(hewn_simplify_order(work, 0, error));
+    HEWN_TRY(hewn_simplify_mark(work, error));
+    return hewn_simplify_weigh(work, error);
+}
+
+hewn_result hewn_simplify_once(const simplify_input *in, double most, simplify_result *out,
+                               hewn_simplify_report *report, hewn_error *error)
+{
+    simplify_wedges wedges = in->wedges ? *in->wedges : (simplify_wedges){0};
+    simplify_work work = {.desc = &in->desc, .frozen = in->frozen, .wedges = in->wedges ? &wedges : NULL};
+    const uint64_t target = hewn_simplify_target(&in->desc, in->triangles.face_count);
+    const size_t scalars = (size_t)wedges.count * wedges.scalars;
+    *out = (simplify_result){0};
+    wedges.corners = in->corner_wedges ? in->corner_wedges : wedges.corners;
+    wedges.values = in->wedges ? hewn_alloc(scalars, sizeof *wedges.values) : NULL;
+    hewn_result result = HEWN_OK;
+    if (in->wedges && !wedges.values)
+        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for attributes");
+    else if (in->wedges)
+        memcpy(wedges.values, in->wedges->values, scalars * sizeof *wedges.values);
+    if (result == HEWN_OK)
+        result = prepare(&work, in, report, error);
     work.most = most / work.scale;
-    report->dropped_faces = in->triangles.face_count - work.face_count;
-    report->dropped_vertices = in->triangles.vertex_count - work.live_vertices;
-    uint64_t target = hewn_simplify_target(&in->desc, in->triangles.face_count);
     if (result == HEWN_OK)
-        result = hewn_simplify_order(&work, 0, error);
-    if (result == HEWN_OK)
-        result = hewn_simplify_mark(&work, error);
-    if (result == HEWN_OK) {
-        hewn_simplify_weigh(&work);
         result = hewn_simplify_run(&work, target < work.live_faces ? (uint32_t)target : work.live_faces, error);
-    }
-    if (result == HEWN_OK)
-        result = hand_out(&work, in, out, error);
     if (result == HEWN_OK) {
-        count_ranks(&work, report);
-        report->triangles = out->face_count;
-        report->target = target;
-        report->reached = out->face_count <= target || target == 0;
-        *into = work.into;
-        work.into = NULL;
+        describe(&work, in, target, report);
+        result = hand_out(&work, in, out, error);
+        out->values = wedges.values;
+        wedges.values = NULL;
     }
+    hewn_free(wedges.values);
+    hewn_free(wedges.sums);
     hewn_simplify_release(&work);
     if (result != HEWN_OK)
-        hewn_simplified_destroy(out);
+        hewn_simplify_result_release(out);
     return result;
 }
 
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
-static hewn_result run(input *in, hewn_simplified *out, hewn_simplify_report *report, hewn_error *error)
-{
-    uint32_t *into = NULL;
-    hewn_result result = run_once(in, INFINITY, out, &into, report, error);
-    report->runs = 1;
-    hewn_free(into);
-    return result;
-}
-
-hewn_result hewn_polygons_simplify(const hewn_polygons *polygons, const hewn_simplify_desc *desc, hewn_simplified *out,
-                                   hewn_simplify_report *report, hewn_error *error)
+hewn_result hewn_simplify_polygons(const hewn_polygons *polygons, const hewn_simplify_desc *desc,
+                                   const simplify_wedges *wedges, simplify_result *out, hewn_simplify_report *report,
+                                   hewn_error *error)
 {
     hewn_simplify_report done = {0};
-    *out = (hewn_simplified){0};
+    *out = (simplify_result){0};
     if (report)
         *report = done;
     HEWN_TRY(hewn_simplify_check(desc, error));
     HEWN_TRY(check_polygons(polygons, error));
-    input in = {.desc = *desc};
+    simplify_input in = {.desc = *desc, .wedges = wedges};
     hewn_result result = cut(polygons, &in, error);
     if (result == HEWN_OK && 3 * in.triangles.face_count >= SIMPLIFY_GONE)
         result = hewn_fail(error, HEWN_LIMIT, "too many triangles to simplify: %llu",
                            (unsigned long long)in.triangles.face_count);
     done.triangles_before = in.triangles.face_count;
     if (result == HEWN_OK)
-        result = run(&in, out, &done, error);
+        result = hewn_simplify_promised(&in, out, &done, error);
     release(&in);
     if (result == HEWN_OK && report)
         *report = done;
     return result;
+}
+
+hewn_result hewn_polygons_simplify(const hewn_polygons *polygons, const hewn_simplify_desc *desc, hewn_simplified *out,
+                                   hewn_simplify_report *report, hewn_error *error)
+{
+    simplify_result result;
+    *out = (hewn_simplified){0};
+    HEWN_TRY(hewn_simplify_polygons(polygons, desc, NULL, &result, report, error));
+    *out = result.mesh;
+    result.mesh = (hewn_simplified){0};
+    hewn_simplify_result_release(&result);
+    return HEWN_OK;
 }

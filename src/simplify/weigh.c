@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "simplify/collapse.h"
 
 /* How much more a feature edge counts than a surface of its length squared, and how little the distance to a vertex
@@ -47,8 +48,9 @@ static void weigh_vertex(simplify_work *work, uint32_t v)
     work->quadrics[v] = q;
 }
 
-void hewn_simplify_weigh(simplify_work *work)
+hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error)
 {
+    HEWN_TRY(hewn_simplify_weigh_wedges(work, error));
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < work->vertex_count; v++)
         weigh_vertex(work, v);
@@ -58,4 +60,5 @@ void hewn_simplify_weigh(simplify_work *work)
             work->key[h] = (float)hewn_simplify_plan(work, h).cost;
             work->flags[h] |= SIMPLIFY_FRESH;
         }
+    return HEWN_OK;
 }

@@ -13,6 +13,7 @@
 
 #include "hewn/simplify.h"
 #include "simplify/quadric.h"
+#include "simplify/wedge.h"
 
 #define SIMPLIFY_GONE 0xFFFFFFFEu
 
@@ -35,6 +36,7 @@ enum {
 
 typedef struct simplify_work {
     const hewn_simplify_desc *desc;
+    const uint8_t *frozen; /* besides those of `desc`; or NULL */
     double origin[3], scale; /* input position = origin + scale × position */
 
     uint32_t vertex_count, live_vertices;
@@ -49,6 +51,8 @@ typedef struct simplify_work {
     float *key;            /* cost at the name of each edge */
     uint8_t *flags;        /* likewise */
     uint32_t *face_origins; /* the input's triangle */
+    simplify_wedges *wedges; /* NULL: no attributes; the caller's */
+    uint32_t *wedge;         /* of the corner at each half-edge's tail */
 
     uint32_t input_count;
     uint32_t *into; /* of each of the input's vertices: itself, or the one that it was joined to */
@@ -100,8 +104,8 @@ void hewn_simplify_release(simplify_work *work);
 /* Marks features and ranks vertices. */
 hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error);
 
-/* Quadrics of all vertices, then keys of all edges. */
-void hewn_simplify_weigh(simplify_work *work);
+/* Quadrics of all vertices and wedges, then keys of all edges. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error);
 
 /* Puts vertices and triangles that are left into an order in which neighbours are near each other, along a curve of
  * Morton's through cubes that lie elsewhere for each `round`; removed ones are dropped. HEWN_OUT_OF_MEMORY. */
