@@ -30,8 +30,8 @@ typedef enum hewn_preserve {
  *
  * lock_boundary: vertices on boundaries stay where they are. lock_angle above 0, in degrees: so do both ends of edges
  * whose faces bend by more. lock_labels: and vertices where `labels`, one a face, differ. Without it, borders between
- * labels are kept as lines like boundaries are: in their place as well as may be. `frozen`, one a vertex: these stay too
- * where it is not 0.
+ * labels are kept as lines like boundaries are: in their place as well as may be. `frozen`, one a vertex: these stay
+ * too where it is not 0.
  *
  * no_self_intersections: no two triangles of the result meet improperly (hewn/check.h), but for those that were so in
  * the input and are as they were.
@@ -91,6 +91,16 @@ typedef struct hewn_simplified {
 HEWN_API hewn_result hewn_polygons_simplify(const hewn_polygons *polygons, const hewn_simplify_desc *desc,
                                             hewn_simplified *out, hewn_simplify_report *report, hewn_error *error);
 HEWN_API void hewn_simplified_destroy(hewn_simplified *simplified);
+
+/* The same of a model, with its attributes. Those of vertices and corners are blended where edges collapse; what
+ * `preserve` names counts in the order of collapses besides the shape (Hoppe 1999, 'New quadric metric for simplifying
+ * meshes with appearance attributes'), and edges where corners differ in it are kept as lines, like boundaries.
+ * Normals that are not preserved are made anew, sharp where faces bend by more than 40 degrees if they are of corners;
+ * texture coordinates that are not preserved are dropped. Whole numbers are not blended. Attributes of faces stay with
+ * what is left of each face. Where `labels` is NULL, faces that differ in label, material, group or object have
+ * different labels (and those of different colours, for COLOR). Vertices without faces are dropped. */
+HEWN_API hewn_result hewn_model_simplify(hewn_model *model, const hewn_simplify_desc *desc,
+                                         hewn_simplify_report *report, hewn_error *error);
 
 #ifdef __cplusplus
 }

@@ -50,8 +50,8 @@ static double bound_by(const reach_survey *survey, const reach_piece *piece, uin
     double most = 0;
     for (int k = 0; k < 3; k++) {
         const reach_spot *corner = &piece->corner[k];
-        double reach = corner->nearest == triangle ? corner->distance
-                                                   : hewn_view_reach(survey->to, triangle, corner->at);
+        double reach =
+            corner->nearest == triangle ? corner->distance : hewn_view_reach(survey->to, triangle, corner->at);
         most = reach > most ? reach : most;
     }
     return most;
@@ -62,7 +62,8 @@ static double bound(const reach_survey *survey, const reach_piece *piece)
 {
     double least = INFINITY;
     for (int k = 0; k < 3; k++) {
-        const reach_spot *corner = &piece->corner[k], *one = &piece->corner[(k + 1) % 3], *two = &piece->corner[(k + 2) % 3];
+        const reach_spot *corner = &piece->corner[k], *one = &piece->corner[(k + 1) % 3],
+                         *two = &piece->corner[(k + 2) % 3];
         double first = gap(corner->at, one->at), second = gap(corner->at, two->at);
         double wide = corner->distance + (first > second ? first : second);
         least = wide < least ? wide : least;
@@ -201,7 +202,8 @@ static double rounding(const hewn_triangle_view *mesh)
 }
 
 /* Distances of all vertices that triangles use; in order, so that each is a guess for the next. */
-static double look_at_vertices(const reach_survey *survey, const hewn_triangle_view *from, reach_spot *spots, uint8_t *used)
+static double look_at_vertices(const reach_survey *survey, const hewn_triangle_view *from, reach_spot *spots,
+                               uint8_t *used)
 {
     const uint64_t run = 1024, runs = (from->vertex_count + run - 1) / run;
     double low = 0;

@@ -67,7 +67,8 @@ static double diagonal(const measured_surface both[2])
     return sqrt(square);
 }
 
-static hewn_result measure(const measured_surface both[2], const hewn_distance_desc *desc, hewn_distance *out, hewn_error *error)
+static hewn_result measure(const measured_surface both[2], const hewn_distance_desc *desc, hewn_distance *out,
+                           hewn_error *error)
 {
     const hewn_progress *progress = desc ? desc->progress : NULL;
     hewn_reach there, back;

@@ -182,8 +182,8 @@ static hewn_result allocate(simplify_work *work, const hewn_polygons *triangles,
     work->twin = hewn_alloc(halves, sizeof *work->twin);
     work->face_origins = hewn_alloc(triangles->face_count, sizeof *work->face_origins);
     work->wedge = work->wedges ? hewn_alloc(halves, sizeof *work->wedge) : NULL;
-    if ((work->wedge || !work->wedges) && work->positions && work->half && work->rank && work->origins && work->into && work->tail && work->twin &&
-        work->face_origins)
+    if ((work->wedge || !work->wedges) && work->positions && work->half && work->rank && work->origins && work->into &&
+        work->tail && work->twin && work->face_origins)
         return HEWN_OK;
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying %llu triangles",
                      (unsigned long long)triangles->face_count);

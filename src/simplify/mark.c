@@ -25,8 +25,8 @@ static bool is_label_border(const simplify_work *work, uint32_t h)
 static bool is_seam(const simplify_work *work, uint32_t h)
 {
     const uint32_t g = work->twin[h];
-    return work->wedge && (work->wedge[h] != work->wedge[simplify_next(g)] ||
-                           work->wedge[simplify_next(h)] != work->wedge[g]);
+    return work->wedge &&
+           (work->wedge[h] != work->wedge[simplify_next(g)] || work->wedge[simplify_next(h)] != work->wedge[g]);
 }
 
 /* What one edge is to its ends. */
@@ -81,7 +81,8 @@ hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error)
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         const uint32_t origin = work->origins[v];
-        const bool frozen = (work->desc->frozen && work->desc->frozen[origin]) || (work->frozen && work->frozen[origin]);
+        const bool frozen =
+            (work->desc->frozen && work->desc->frozen[origin]) || (work->frozen && work->frozen[origin]);
         if (frozen && work->rank[v] < SIMPLIFY_LOCKED)
             work->rank[v] = SIMPLIFY_LOCKED;
         rank_vertex(work, v);

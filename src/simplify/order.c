@@ -141,8 +141,7 @@ static bool move_halves(simplify_work *work, const uint32_t *order, const uint32
     float *key = work->key ? hewn_alloc(count, sizeof *key) : NULL;
     uint8_t *flags = work->flags ? hewn_alloc(count, sizeof *flags) : NULL;
     uint32_t *wedge = work->wedge ? hewn_alloc(count, sizeof *wedge) : NULL;
-    bool done =
-        place && tail && twin && (key || !work->key) && (flags || !work->flags) && (wedge || !work->wedge);
+    bool done = place && tail && twin && (key || !work->key) && (flags || !work->flags) && (wedge || !work->wedge);
     for (uint32_t f = 0; done && f < work->live_faces; f++)
         place[order[f]] = f;
 #pragma omp parallel for schedule(static)

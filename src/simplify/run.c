@@ -25,8 +25,7 @@ static bool may_queue(const edge_front *front, uint32_t name)
 {
     const simplify_work *work = front->work;
     return work->key[name] <= front->limit && !isinf(work->key[name]) &&
-           (!front->inside ||
-            (front->inside[work->tail[name]] && front->inside[simplify_head(work, name)]));
+           (!front->inside || (front->inside[work->tail[name]] && front->inside[simplify_head(work, name)]));
 }
 
 static hewn_result enqueue(edge_front *front, uint32_t name)

@@ -178,6 +178,8 @@ static void blend(const simplify_wedges *wedges, const simplify_wedge_sum *sum, 
     double *kept = values_of(wedges, into);
     for (uint32_t s = 0; s < wedges->scalars; s++) {
         double value = kept[s] + share * (gone[s] - kept[s]);
+        if (wedges->fixed && wedges->fixed[s])
+            value = share > 0.5 ? gone[s] : kept[s];
         if (s < wedges->counted && sum->own.weight > 0 && wedges->weights[s] > 0) {
             const double least = fmin(kept[s], gone[s]), most = fmax(kept[s], gone[s]);
             value = (simplify_dot(sum->slope[s], at) + sum->slope[s][3]) / (sum->own.weight * wedges->weights[s]);

@@ -1,6 +1,6 @@
 /* Attributes while a mesh is simplified. The corners at a vertex that have the same values are one wedge (Hoppe 1999,
- * 'New quadric metric for simplifying meshes with appearance attributes'); edges with different wedges on both sides are
- * seams, and features. */
+ * 'New quadric metric for simplifying meshes with appearance attributes'); edges with different wedges on both sides
+ * are seams, and features. */
 #ifndef HEWN_SRC_SIMPLIFY_WEDGE_H
 #define HEWN_SRC_SIMPLIFY_WEDGE_H
 
@@ -11,13 +11,14 @@ struct simplify_work;
 
 enum { SIMPLIFY_MOST_COUNTED = 16 };
 
-/* Scalars of all wedges, and how far they are from the input's by a quadric of each wedge: the sum over its triangles of
- * area × (g x + d - s)², where g x + d is the scalar over the triangle's plane and s the wedge's. Only the first
+/* Scalars of all wedges, and how far they are from the input's by a quadric of each wedge: the sum over its triangles
+ * of area × (g x + d - s)², where g x + d is the scalar over the triangle's plane and s the wedge's. Only the first
  * `counted` scalars count, in units of length: they are multiplied by `weights` before. */
 typedef struct simplify_wedges {
     uint32_t count, scalars, counted;
     const uint32_t *corners; /* of the input: 3 a triangle; NULL: the wedge is the vertex */
     double *values;          /* count × scalars */
+    uint8_t *fixed;          /* one a scalar: never blended, the nearer one stays */
     double weights[SIMPLIFY_MOST_COUNTED];
     double *sums; /* count × simplify_wedge_stride() */
 } simplify_wedges;

@@ -36,7 +36,7 @@ enum {
 
 typedef struct simplify_work {
     const hewn_simplify_desc *desc;
-    const uint8_t *frozen; /* besides those of `desc`; or NULL */
+    const uint8_t *frozen;   /* besides those of `desc`; or NULL */
     double origin[3], scale; /* input position = origin + scale × position */
 
     uint32_t vertex_count, live_vertices;
@@ -48,9 +48,9 @@ typedef struct simplify_work {
 
     uint32_t face_count, live_faces;
     uint32_t *tail, *twin;
-    float *key;            /* cost at the name of each edge */
-    uint8_t *flags;        /* likewise */
-    uint32_t *face_origins; /* the input's triangle */
+    float *key;              /* cost at the name of each edge */
+    uint8_t *flags;          /* likewise */
+    uint32_t *face_origins;  /* the input's triangle */
     simplify_wedges *wedges; /* NULL: no attributes; the caller's */
     uint32_t *wedge;         /* of the corner at each half-edge's tail */
 
