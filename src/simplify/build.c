@@ -182,8 +182,9 @@ static hewn_result allocate(simplify_work *work, const hewn_polygons *triangles,
     work->twin = hewn_alloc(halves, sizeof *work->twin);
     work->face_origins = hewn_alloc(triangles->face_count, sizeof *work->face_origins);
     work->wedge = work->wedges ? hewn_alloc(halves, sizeof *work->wedge) : NULL;
-    if ((work->wedge || !work->wedges) && work->positions && work->half && work->rank && work->origins && work->into &&
-        work->tail && work->twin && work->face_origins)
+    work->limit = work->limits ? hewn_alloc(verts, sizeof *work->limit) : NULL;
+    if ((work->limit || !work->limits) && (work->wedge || !work->wedges) && work->positions && work->half &&
+        work->rank && work->origins && work->into && work->tail && work->twin && work->face_origins)
         return HEWN_OK;
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying %llu triangles",
                      (unsigned long long)triangles->face_count);
@@ -198,6 +199,8 @@ hewn_result hewn_simplify_build(simplify_work *work, const hewn_polygons *triang
         for (size_t axis = 0, at = 3 * (size_t)v; axis < 3; axis++)
             work->positions[at + axis] = simplify_inward(work, triangles->positions[at + axis], axis);
         work->origins[v] = work->into[v] = v;
+        if (work->limit)
+            work->limit[v] = (float)((double)work->limits[v] / work->scale);
     }
     take_faces(work, triangles);
     memset(work->twin, 0xFF, 3 * (size_t)work->face_count * sizeof *work->twin);
@@ -227,5 +230,6 @@ void hewn_simplify_release(simplify_work *work)
     hewn_free(work->flags);
     hewn_free(work->face_origins);
     hewn_free(work->wedge);
+    hewn_free(work->limit);
     *work = (simplify_work){0};
 }

@@ -65,7 +65,10 @@ simplify_plan hewn_simplify_plan(const simplify_work *work, uint32_t half)
         place(&all, simplify_at(work, a), simplify_at(work, b), &plan);
     if (counted && low < high)
         plan.cost += hewn_simplify_pairs_cost(work, &pairs, plan.at);
-    plan.far = !isinf(work->most) && simplify_quadric_value(&q, plan.at) > work->most * work->most * q.weight;
+    if (work->limit) {
+        const double limit = (double)fminf(work->limit[a], work->limit[b]);
+        plan.far = simplify_quadric_value(&q, plan.at) > limit * limit * q.weight;
+    }
     return plan;
 }
 
@@ -261,6 +264,8 @@ uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan)
     for (size_t axis = 0; axis < 3; axis++)
         work->positions[3 * (size_t)kept + axis] = plan->at[axis];
     work->into[work->origins[gone]] = work->origins[kept];
+    if (work->limit)
+        work->limit[kept] = fminf(work->limit[kept], work->limit[gone]);
     stir(work, kept);
     return twin == HEWN_NONE ? 1 : 2;
 }

@@ -83,7 +83,7 @@ hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error)
         const uint32_t origin = work->origins[v];
         const bool frozen =
             (work->desc->frozen && work->desc->frozen[origin]) || (work->frozen && work->frozen[origin]);
-        if (frozen && work->rank[v] < SIMPLIFY_LOCKED)
+        if ((frozen || (work->limit && work->limit[v] <= 0)) && work->rank[v] < SIMPLIFY_LOCKED)
             work->rank[v] = SIMPLIFY_LOCKED;
         rank_vertex(work, v);
     }

@@ -201,7 +201,8 @@ hewn_result hewn_simplify_order(simplify_work *work, uint32_t round, hewn_error 
            move((void **)&work->quadrics, sizeof *work->quadrics, order, verts) &&
            move((void **)&work->half, sizeof *work->half, order, verts) &&
            move((void **)&work->rank, sizeof *work->rank, order, verts) &&
-           move((void **)&work->origins, sizeof *work->origins, order, verts);
+           move((void **)&work->origins, sizeof *work->origins, order, verts) &&
+           move((void **)&work->limit, sizeof *work->limit, order, verts);
     hewn_free(order);
     work->vertex_count = verts;
     work->face_count = work->live_faces;

@@ -8,21 +8,22 @@
 #include "geom/hausdorff.h"
 #include "hewn/check.h"
 
-/* The first guess of the largest quadric error (a mean distance) for a given distance, by how much it is lowered where
- * more than a share of the triangles is too far away, and how many intersections are listed in one go. */
-static const double first_share = 0.7, lower = 0.6, much = 0.02;
-enum { MOST_LOWERED = 12, MOST_PAIRS = 1 << 16 };
+/* Where a run came out too far away, the largest error by quadrics (a mean distance, at first as large as what is
+ * allowed) becomes this share of what it was; below the least share vertices stay as they are. */
+static const float lower = 0.5F, least = 0.01F;
+
+/* Intersections that are listed in one go. */
+enum { MOST_PAIRS = 1 << 16 };
 
 typedef struct simplify_promise {
     simplify_input *in;
     simplify_result *out;
     hewn_simplify_report *report;
-    double allowed, most;
-    uint32_t lowered;
+    double allowed;
     hewn_bvh bvh;       /* of the input */
     uint8_t *far[2];    /* triangles of the input and of the result */
     uint8_t *offending; /* the input's vertices that stand for vertices of the result which must not be */
-    uint64_t far_count; /* triangles of the input */
+
     uint32_t (*pairs)[2];
 } simplify_promise;
 
@@ -95,12 +96,10 @@ static void mark_far(simplify_promise *job)
 {
     const hewn_polygons *before = &job->in->triangles;
     const hewn_simplified *after = &job->out->mesh;
-    job->far_count = 0;
-    for (uint64_t t = 0; t < before->face_count; t++) {
-        job->far_count += job->far[0][t];
+
+    for (uint64_t t = 0; t < before->face_count; t++)
         for (uint64_t k = 0; k < 3 && job->far[0][t]; k++)
             job->offending[root_of(job->out->into, before->corners[3 * t + k])] = 1;
-    }
     for (uint64_t t = 0; t < after->face_count; t++)
         for (uint64_t k = 0; k < 3 && job->far[1][t]; k++)
             job->offending[after->vertex_origins[after->corners[3 * t + k]]] = 1;
@@ -130,15 +129,25 @@ static hewn_result mark_crossings(simplify_promise *job, hewn_error *error)
     return HEWN_OK;
 }
 
-/* All vertices that became offending ones stay in the next run. Returns how many of them did not before. */
-static uint64_t freeze(simplify_promise *job)
+/* What became offending vertices must come out better in the next run: with smaller errors, or as it is. Returns how
+ * many vertices that changes something for. */
+static uint64_t tighten(simplify_promise *job, bool crossings)
 {
+    simplify_input *in = job->in;
     uint64_t count = 0;
-    for (uint64_t v = 0; v < job->in->triangles.vertex_count; v++)
-        if (!job->in->frozen[v] && job->offending[root_of(job->out->into, (uint32_t)v)]) {
-            job->in->frozen[v] = 1;
+    for (uint64_t v = 0; v < in->triangles.vertex_count; v++) {
+        if (!job->offending[root_of(job->out->into, (uint32_t)v)])
+            continue;
+        if (crossings) {
+            count += !in->frozen[v];
+            in->frozen[v] = 1;
+        } else if (in->limits[v] > 0) {
+            const float now = lower * in->limits[v];
+            in->limits[v] = (double)now < (double)least * job->allowed ? 0 : now;
             count++;
         }
+    }
+    memset(job->offending, 0, in->triangles.vertex_count);
     return count;
 }
 
@@ -155,18 +164,20 @@ static hewn_result prepare(simplify_promise *job, hewn_error *error)
     if (!bounded && !desc->no_self_intersections)
         return HEWN_OK;
     in->frozen = hewn_alloc_zero(view.vertex_count, 1);
-    job->offending = hewn_alloc(view.vertex_count, 1);
+    in->limits = bounded ? hewn_alloc(view.vertex_count, sizeof *in->limits) : NULL;
+    job->offending = hewn_alloc_zero(view.vertex_count, 1);
     job->far[0] = bounded ? hewn_alloc(view.triangle_count, 1) : NULL;
     job->far[1] = bounded ? hewn_alloc(view.triangle_count, 1) : NULL;
     job->pairs = desc->no_self_intersections ? hewn_alloc(MOST_PAIRS, sizeof *job->pairs) : NULL;
-    if (!in->frozen || !job->offending || (bounded && (!job->far[0] || !job->far[1])) ||
+    if (!in->frozen || !job->offending || (bounded && (!in->limits || !job->far[0] || !job->far[1])) ||
         (desc->no_self_intersections && !job->pairs))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     if (bounded) {
         const double relative = desc->relative_error * diagonal(&job->bvh);
         job->allowed = desc->error > 0 && (relative <= 0 || desc->error < relative) ? desc->error : relative;
         job->report->error_allowed = job->allowed;
-        job->most = first_share * job->allowed;
+        for (uint64_t v = 0; v < view.vertex_count; v++)
+            in->limits[v] = (float)job->allowed;
     }
     return HEWN_OK;
 }
@@ -175,24 +186,17 @@ static hewn_result prepare(simplify_promise *job, hewn_error *error)
 static hewn_result attempt(simplify_promise *job, bool *again, hewn_error *error)
 {
     *again = false;
-    HEWN_TRY(hewn_simplify_once(job->in, job->most, job->out, job->report, error));
+    HEWN_TRY(hewn_simplify_once(job->in, job->out, job->report, error));
     job->report->runs++;
-    if (!job->offending)
-        return HEWN_OK;
-    memset(job->offending, 0, job->in->triangles.vertex_count);
     if (job->allowed > 0) {
         HEWN_TRY(measure(job, true, error));
         mark_far(job);
-        if ((double)job->far_count > much * (double)job->in->triangles.face_count && job->lowered < MOST_LOWERED) {
-            job->most *= lower;
-            job->lowered++;
-            *again = true;
-            return HEWN_OK;
-        }
+        *again = tighten(job, false) > 0;
     }
-    if (job->pairs)
+    if (job->pairs && !*again) {
         HEWN_TRY(mark_crossings(job, error));
-    *again = freeze(job) > 0;
+        *again = tighten(job, true) > 0;
+    }
     return HEWN_OK;
 }
 
@@ -215,7 +219,7 @@ static hewn_result run(simplify_promise *job, hewn_error *error)
 hewn_result hewn_simplify_promised(simplify_input *in, simplify_result *out, hewn_simplify_report *report,
                                    hewn_error *error)
 {
-    simplify_promise job = {.in = in, .out = out, .report = report, .most = INFINITY};
+    simplify_promise job = {.in = in, .out = out, .report = report};
     hewn_result result = in->triangles.face_count > 0
                              ? run(&job, error)
                              : hewn_fail(error, HEWN_BAD_INPUT, "there are no faces to simplify");

@@ -15,6 +15,7 @@ typedef struct simplify_input {
     int32_t *labels;         /* of each triangle */
     uint32_t *corner_wedges; /* of each triangle's corners; NULL where they are those of `wedges` */
     uint8_t *frozen;         /* one a vertex: stays, for the sake of a promise; or NULL */
+    float *limits;           /* one a vertex: the largest error by its quadric, a length; or NULL */
 } simplify_input;
 
 /* Triangles, and the wedges of their corners with all wedges' values. */
@@ -26,9 +27,9 @@ typedef struct simplify_result {
 } simplify_result;
 void hewn_simplify_result_release(simplify_result *result);
 
-/* One run: no collapse of a greater error by its quadric than `most`, a length. */
-hewn_result hewn_simplify_once(const simplify_input *in, double most, simplify_result *out,
-                               hewn_simplify_report *report, hewn_error *error);
+/* One run. */
+hewn_result hewn_simplify_once(const simplify_input *in, simplify_result *out, hewn_simplify_report *report,
+                               hewn_error *error);
 
 /* hewn_polygons_simplify(), with wedges or NULL. */
 hewn_result hewn_simplify_polygons(const hewn_polygons *polygons, const hewn_simplify_desc *desc,

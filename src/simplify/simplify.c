@@ -37,6 +37,7 @@ static void release(simplify_input *in)
     hewn_free(in->labels);
     hewn_free(in->corner_wedges);
     hewn_free(in->frozen);
+    hewn_free(in->limits);
 }
 
 static hewn_result check_polygons(const hewn_polygons *polygons, hewn_error *error)
@@ -120,7 +121,7 @@ static hewn_result hand_out(simplify_work *work, const simplify_input *in, simpl
     return HEWN_OK;
 }
 
-static void describe(const simplify_work *work, const simplify_input *in, uint64_t target, hewn_simplify_report *report)
+static void describe(const simplify_work *work, uint64_t target, hewn_simplify_report *report)
 {
     report->triangles = work->face_count;
     report->target = target;
@@ -130,7 +131,6 @@ static void describe(const simplify_work *work, const simplify_input *in, uint64
         report->unwalked_vertices += work->rank[v] == SIMPLIFY_APART;
         report->locked_vertices += work->rank[v] == SIMPLIFY_LOCKED;
     }
-    (void)in;
 }
 
 static hewn_result prepare(simplify_work *work, const simplify_input *in, hewn_simplify_report *report,
@@ -144,11 +144,12 @@ static hewn_result prepare(simplify_work *work, const simplify_input *in, hewn_s
     return hewn_simplify_weigh(work, error);
 }
 
-hewn_result hewn_simplify_once(const simplify_input *in, double most, simplify_result *out,
-                               hewn_simplify_report *report, hewn_error *error)
+hewn_result hewn_simplify_once(const simplify_input *in, simplify_result *out, hewn_simplify_report *report,
+                               hewn_error *error)
 {
     simplify_wedges wedges = in->wedges ? *in->wedges : (simplify_wedges){0};
-    simplify_work work = {.desc = &in->desc, .frozen = in->frozen, .wedges = in->wedges ? &wedges : NULL};
+    simplify_work work = {
+        .desc = &in->desc, .frozen = in->frozen, .limits = in->limits, .wedges = in->wedges ? &wedges : NULL};
     const uint64_t target = hewn_simplify_target(&in->desc, in->triangles.face_count);
     const size_t scalars = (size_t)wedges.count * wedges.scalars;
     *out = (simplify_result){0};
@@ -161,11 +162,11 @@ hewn_result hewn_simplify_once(const simplify_input *in, double most, simplify_r
         memcpy(wedges.values, in->wedges->values, scalars * sizeof *wedges.values);
     if (result == HEWN_OK)
         result = prepare(&work, in, report, error);
-    work.most = most / work.scale;
+
     if (result == HEWN_OK)
         result = hewn_simplify_run(&work, target < work.live_faces ? (uint32_t)target : work.live_faces, error);
     if (result == HEWN_OK) {
-        describe(&work, in, target, report);
+        describe(&work, target, report);
         result = hand_out(&work, in, out, error);
         out->values = wedges.values;
         wedges.values = NULL;

@@ -37,6 +37,7 @@ enum {
 typedef struct simplify_work {
     const hewn_simplify_desc *desc;
     const uint8_t *frozen;   /* besides those of `desc`; or NULL */
+    const float *limits;     /* of the input's vertices, lengths; NULL: none */
     double origin[3], scale; /* input position = origin + scale × position */
 
     uint32_t vertex_count, live_vertices;
@@ -45,6 +46,7 @@ typedef struct simplify_work {
     uint32_t *half;
     uint8_t *rank;
     uint32_t *origins; /* the input's vertex */
+    float *limit;      /* the root of value / weight that a collapse here may come to; NULL: any */
 
     uint32_t face_count, live_faces;
     uint32_t *tail, *twin;
@@ -56,7 +58,7 @@ typedef struct simplify_work {
 
     uint32_t input_count;
     uint32_t *into; /* of each of the input's vertices: itself, or the one that it was joined to */
-    double most;    /* no collapse of a greater error, a distance; infinite: any */
+
 } simplify_work;
 
 static inline uint32_t simplify_next(uint32_t h)
