@@ -220,6 +220,7 @@ void hewn_simplify_release(simplify_work *work)
 {
     hewn_free(work->positions);
     hewn_free(work->quadrics);
+    hewn_free(work->facing);
     hewn_free(work->half);
     hewn_free(work->rank);
     hewn_free(work->origins);

@@ -144,14 +144,25 @@ static double shape(const double a[3], const double b[3], const double c[3], dou
     return sides > 0 ? 3.4641016151377544 * doubled_area / sides : 0;
 }
 
-/* Whether the triangle of a vertex and two neighbours stays sound when the vertex moves. */
-static bool turn_allowed(const double from[3], const double to[3], const double p[3], const double q[3])
+/* Where a triangle's surface faced in the input, by what has joined its corners. */
+static void facing_of(const simplify_work *work, uint32_t p, uint32_t q, double out[3])
+{
+    for (size_t axis = 0; axis < 3; axis++)
+        out[axis] = (double)work->facing[3 * (size_t)p + axis] + (double)work->facing[3 * (size_t)q + axis];
+}
+
+/* Whether the triangle of a vertex and two neighbours stays sound when the vertex moves: it turns little, does not turn
+ * away from where the input faced, and does not become a sliver. */
+static bool turn_allowed(const double from[3], const double to[3], const double p[3], const double q[3],
+                         const double facing[3])
 {
     double before[3], after[3];
     simplify_area_vector(from, p, q, before);
     simplify_area_vector(to, p, q, after);
     double old_area = sqrt(simplify_dot(before, before)), new_area = sqrt(simplify_dot(after, after));
     if (simplify_dot(before, after) < least_cosine * old_area * new_area)
+        return false;
+    if (simplify_dot(after, facing) < 0 && simplify_dot(before, facing) >= 0)
         return false;
     double now = shape(to, p, q, new_area);
     return now >= least_shape || now >= shape(from, p, q, old_area);
@@ -161,20 +172,77 @@ static bool turn_allowed(const double from[3], const double to[3], const double 
 static bool turns_allowed(const simplify_work *work, uint32_t v, uint32_t other, const ring *around, const double to[3])
 {
     const double *from = simplify_at(work, v);
+    double own[3], facing[3];
+    facing_of(work, v, other, own);
     for (uint32_t i = 0; i < around->faces; i++) {
         uint32_t p = around->neighbours[i], q = around->neighbours[i + 1 < around->count ? i + 1 : 0];
-        if (p != other && q != other && !turn_allowed(from, to, simplify_at(work, p), simplify_at(work, q)))
+        if (p == other || q == other)
+            continue;
+        facing_of(work, p, q, facing);
+        for (int axis = 0; axis < 3; axis++)
+            facing[axis] += own[axis];
+        if (!turn_allowed(from, to, simplify_at(work, p), simplify_at(work, q), facing))
             return false;
     }
     return true;
 }
 
-bool hewn_simplify_allowed(const simplify_work *work, const simplify_plan *plan)
+/* --- volume ------------------------------------------------------------------------------------------------------- */
+
+/* Adds the triangles around `v`, but for those with `other`: area vectors, and their products with a corner. */
+static void add_volume(const simplify_work *work, uint32_t v, uint32_t other, const ring *around, double sum[4])
+{
+    const double *at = simplify_at(work, v);
+    for (uint32_t i = 0; i < around->faces; i++) {
+        const uint32_t p = around->neighbours[i], q = around->neighbours[i + 1 < around->count ? i + 1 : 0];
+        double n[3];
+        if (p == other || q == other)
+            continue;
+        simplify_area_vector(at, simplify_at(work, p), simplify_at(work, q), n);
+        for (int axis = 0; axis < 3; axis++)
+            sum[axis] += n[axis];
+        sum[3] += simplify_dot(n, at);
+    }
+}
+
+/* Quadrics put vertices outside of what is round, so it grows. The place is moved to the nearest one, as the quadric
+ * measures, that keeps the volume (Lindstrom and Turk 1998, 'Fast and memory efficient polygonal simplification'). */
+static void keep_volume(const simplify_work *work, const ring *gone, const ring *kept, simplify_plan *plan)
+{
+    double sum[4] = {0}, step[3], moved[3];
+    if (work->rank[plan->gone] != SIMPLIFY_SMOOTH || work->rank[plan->kept] != SIMPLIFY_SMOOTH)
+        return;
+    add_volume(work, plan->gone, HEWN_NONE, gone, sum);
+    add_volume(work, plan->kept, plan->gone, kept, sum);
+    simplify_quadric q = work->quadrics[plan->gone];
+    simplify_quadric_add(&q, &work->quadrics[plan->kept]);
+    const double off = sum[3] - simplify_dot(sum, plan->at);
+    if (!simplify_quadric_solve(&q, sum, step))
+        return;
+    const double along = simplify_dot(sum, step);
+    if (!(along > 0))
+        return;
+    double square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        moved[axis] = plan->at[axis] + step[axis] * off / along;
+        square += (moved[axis] - plan->at[axis]) * (moved[axis] - plan->at[axis]);
+    }
+    double edge[3];
+    simplify_between(simplify_at(work, plan->gone), simplify_at(work, plan->kept), edge);
+    if (!(square <= 0.02 * simplify_dot(edge, edge)))
+        return;
+    for (int axis = 0; axis < 3; axis++)
+        plan->at[axis] = moved[axis];
+}
+
+bool hewn_simplify_allowed(const simplify_work *work, simplify_plan *plan)
 {
     ring gone, kept;
-    return gather(work, plan->gone, &gone) && gather(work, plan->kept, &kept) &&
-           links_allowed(work, plan->half, &gone, &kept) &&
-           turns_allowed(work, plan->gone, plan->kept, &gone, plan->at) &&
+    if (!gather(work, plan->gone, &gone) || !gather(work, plan->kept, &kept) ||
+        !links_allowed(work, plan->half, &gone, &kept))
+        return false;
+    keep_volume(work, &gone, &kept, plan);
+    return turns_allowed(work, plan->gone, plan->kept, &gone, plan->at) &&
            turns_allowed(work, plan->kept, plan->gone, &kept, plan->at);
 }
 
@@ -261,6 +329,8 @@ uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan)
     work->half[gone] = SIMPLIFY_GONE;
     work->rank[kept] = work->rank[gone] > work->rank[kept] ? work->rank[gone] : work->rank[kept];
     simplify_quadric_add(&work->quadrics[kept], &work->quadrics[gone]);
+    for (size_t axis = 0; axis < 3; axis++)
+        work->facing[3 * (size_t)kept + axis] += work->facing[3 * (size_t)gone + axis];
     for (size_t axis = 0; axis < 3; axis++)
         work->positions[3 * (size_t)kept + axis] = plan->at[axis];
     work->into[work->origins[gone]] = work->origins[kept];

@@ -17,7 +17,7 @@ typedef struct simplify_plan {
 simplify_plan hewn_simplify_plan(const simplify_work *work, uint32_t half);
 
 /* Whether the result stays manifold, of the same topology, and no triangle turns over or folds. */
-bool hewn_simplify_allowed(const simplify_work *work, const simplify_plan *plan);
+bool hewn_simplify_allowed(const simplify_work *work, simplify_plan *plan);
 
 /* Does it. Keys around `kept` become lower bounds. Returns how many triangles are gone. */
 uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan);

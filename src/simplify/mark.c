@@ -72,7 +72,8 @@ hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error)
     work->flags = hewn_alloc_zero(halves, sizeof *work->flags);
     work->key = hewn_alloc_zero(halves, sizeof *work->key);
     work->quadrics = hewn_alloc_zero(work->vertex_count, sizeof *work->quadrics);
-    if (!work->flags || !work->key || !work->quadrics)
+    work->facing = hewn_alloc_zero(work->vertex_count, 3 * sizeof *work->facing);
+    if (!work->flags || !work->key || !work->quadrics || !work->facing)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying %u triangles", work->face_count);
 #pragma omp parallel for schedule(static)
     for (uint32_t h = 0; h < halves; h++)

@@ -199,6 +199,7 @@ hewn_result hewn_simplify_order(simplify_work *work, uint32_t round, hewn_error 
     hewn_free(number);
     done = done && move((void **)&work->positions, 3 * sizeof *work->positions, order, verts) &&
            move((void **)&work->quadrics, sizeof *work->quadrics, order, verts) &&
+           move((void **)&work->facing, 3 * sizeof *work->facing, order, verts) &&
            move((void **)&work->half, sizeof *work->half, order, verts) &&
            move((void **)&work->rank, sizeof *work->rank, order, verts) &&
            move((void **)&work->origins, sizeof *work->origins, order, verts) &&

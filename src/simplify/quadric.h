@@ -69,12 +69,10 @@ static inline double simplify_quadric_value(const simplify_quadric *q, const dou
     return value > 0 ? value : 0;
 }
 
-/* Where the value is least, found as a step from `from`; false where the matrix is singular in double precision. */
-static inline bool simplify_quadric_least(const simplify_quadric *q, const double from[3], double out[3])
+/* A x = r; false where the matrix is singular in double precision. */
+static inline bool simplify_quadric_solve(const simplify_quadric *q, const double r[3], double out[3])
 {
     const double *a = q->a, tiny = 1e-12 * (a[0] + a[3] + a[5]);
-    double s[3];
-    simplify_quadric_slope(q, from, s);
     double d0 = a[0];
     if (!(d0 > tiny))
         return false;
@@ -84,12 +82,23 @@ static inline bool simplify_quadric_least(const simplify_quadric *q, const doubl
     double m = a[4] - l1 * a[2], l3 = m / d1, d2 = a[5] - l2 * a[2] - l3 * m;
     if (!(d2 > tiny))
         return false;
-    double y0 = -s[0], y1 = -s[1] - l1 * y0, y2 = -s[2] - l2 * y0 - l3 * y1;
-    double z = y2 / d2, y = y1 / d1 - l3 * z, x = y0 / d0 - l1 * y - l2 * z;
-    out[0] = from[0] + x;
-    out[1] = from[1] + y;
-    out[2] = from[2] + z;
+    double y1 = r[1] - l1 * r[0], y2 = r[2] - l2 * r[0] - l3 * y1;
+    out[2] = y2 / d2;
+    out[1] = y1 / d1 - l3 * out[2];
+    out[0] = r[0] / d0 - l1 * out[1] - l2 * out[2];
     return isfinite(out[0]) && isfinite(out[1]) && isfinite(out[2]);
+}
+
+/* Where the value is least, found as a step from `from`. */
+static inline bool simplify_quadric_least(const simplify_quadric *q, const double from[3], double out[3])
+{
+    double slope[3];
+    simplify_quadric_slope(q, from, slope);
+    if (!simplify_quadric_solve(q, slope, out))
+        return false;
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = from[axis] - out[axis];
+    return true;
 }
 
 #endif

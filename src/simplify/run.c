@@ -68,7 +68,7 @@ static hewn_result step(edge_front *front)
     simplify_queue_pop(&front->queue);
     if (!is_current(work, item))
         return HEWN_OK;
-    const simplify_plan plan = hewn_simplify_plan(work, name);
+    simplify_plan plan = hewn_simplify_plan(work, name);
     work->flags[name] &= (uint8_t)~SIMPLIFY_QUEUED;
     if (!(work->flags[name] & SIMPLIFY_FRESH)) {
         const float cost = (float)plan.cost;

@@ -26,6 +26,7 @@ static void add_feature(simplify_quadric *q, const double from[3], const double 
 static void weigh_vertex(simplify_work *work, uint32_t v)
 {
     simplify_quadric q = {0};
+    double facing[3] = {0};
     uint32_t first = work->half[v], h = first;
     if (first == SIMPLIFY_GONE || work->rank[v] == SIMPLIFY_APART)
         return;
@@ -35,6 +36,8 @@ static void weigh_vertex(simplify_work *work, uint32_t v)
         const double *b = simplify_at(work, simplify_head(work, h)), *c = simplify_at(work, work->tail[in]);
         double normal[3];
         simplify_area_vector(at, b, c, normal);
+        for (int axis = 0; axis < 3; axis++)
+            facing[axis] += normal[axis];
         double area = unit(normal) / 2;
         simplify_quadric_add_plane(&q, normal, at, area);
         simplify_quadric_add_point(&q, at, area * stay_weight);
@@ -46,6 +49,8 @@ static void weigh_vertex(simplify_work *work, uint32_t v)
         h = work->twin[in];
     } while (h != HEWN_NONE && h != first);
     work->quadrics[v] = q;
+    for (size_t axis = 0; axis < 3; axis++)
+        work->facing[3 * (size_t)v + axis] = (float)facing[axis];
 }
 
 hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error)

@@ -43,6 +43,7 @@ typedef struct simplify_work {
     uint32_t vertex_count, live_vertices;
     double *positions; /* 3 a vertex */
     simplify_quadric *quadrics;
+    float *facing; /* 3 a vertex: area vectors of the input's triangles around all that joined it */
     uint32_t *half;
     uint8_t *rank;
     uint32_t *origins; /* the input's vertex */
