@@ -7,7 +7,7 @@
 #include "geom/nearest.h"
 
 /* A triangle in this many pieces, or at this depth, is taken as it stands. */
-enum { MOST_PIECES = 20000, MOST_DEPTH = 60 };
+enum { MOST_PIECES = 1 << 20, MOST_DEPTH = 90 };
 
 /* A corner of a piece: where it is, and which triangle is nearest. */
 typedef struct reach_spot {
@@ -77,44 +77,22 @@ static double bound(const reach_survey *survey, const reach_piece *piece)
 
 /* --- cutting ------------------------------------------------------------------------------------------------------ */
 
-/* The plane that parts two triangles with a common edge, n x = n[3]: through the edge and between their normals. */
-static bool part(const reach_survey *survey, uint32_t one, uint32_t two, double n[4])
+/* The planes through the edges of a triangle and along its normal, n x = n[3], positive outside. */
+static void walls_of(double p[3][3], double walls[3][4])
 {
-    const uint32_t *a = survey->to->corners + 3 * (uint64_t)one, *b = survey->to->corners + 3 * (uint64_t)two;
-    double p[2][3], tip[2][3], toward[2][3], along[3], square = 0;
-    int shared = 0, tips = 0;
-    for (int k = 0; k < 3; k++) {
-        bool both = a[k] == b[0] || a[k] == b[1] || a[k] == b[2];
-        if (both && shared == 2)
-            return false;
-        hewn_triangle_point(survey->to, a[k], both ? p[shared++] : tip[tips++ ? 1 : 0]);
-    }
-    if (shared != 2)
-        return false;
+    double side[3][3], normal[3];
     for (int k = 0; k < 3; k++)
-        if (b[k] != a[0] && b[k] != a[1] && b[k] != a[2])
-            hewn_triangle_point(survey->to, b[k], tip[1]);
-    for (int axis = 0; axis < 3; axis++) {
-        along[axis] = p[1][axis] - p[0][axis];
-        square += along[axis] * along[axis];
-    }
-    for (int t = 0; t < 2; t++) { /* unit vectors in each triangle, across the edge */
-        double dot = 0, length = 0;
         for (int axis = 0; axis < 3; axis++)
-            dot += (tip[t][axis] - p[0][axis]) * along[axis];
-        for (int axis = 0; axis < 3; axis++) {
-            toward[t][axis] = tip[t][axis] - p[0][axis] - (square > 0 ? dot / square : 0) * along[axis];
-            length += toward[t][axis] * toward[t][axis];
+            side[k][axis] = p[(k + 1) % 3][axis] - p[k][axis];
+    for (int x = 0; x < 3; x++)
+        normal[x] = side[0][(x + 1) % 3] * side[1][(x + 2) % 3] - side[0][(x + 2) % 3] * side[1][(x + 1) % 3];
+    for (int k = 0; k < 3; k++) {
+        walls[k][3] = 0;
+        for (int x = 0; x < 3; x++) {
+            walls[k][x] = side[k][(x + 1) % 3] * normal[(x + 2) % 3] - side[k][(x + 2) % 3] * normal[(x + 1) % 3];
+            walls[k][3] += walls[k][x] * p[k][x];
         }
-        for (int axis = 0; axis < 3; axis++)
-            toward[t][axis] /= sqrt(length);
     }
-    n[3] = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        n[axis] = toward[0][axis] - toward[1][axis];
-        n[3] += n[axis] * p[0][axis];
-    }
-    return isfinite(n[3]);
 }
 
 /* Cuts a piece at a point between the corners k and k + 1. */
@@ -131,27 +109,41 @@ static void halve(const reach_survey *survey, const reach_piece *whole, int k, d
     out[0].depth = out[1].depth = whole->depth + 1;
 }
 
-/* Where two corners are nearest to neighbours, where their side crosses the plane between these; else in the middle of
- * the longest side. A cut next to a corner would leave a piece as it was. */
-static void cut(const reach_survey *survey, const reach_piece *whole, reach_piece out[2])
+/* The longest side, by its first corner. */
+static int longest_of(const double a[3], const double b[3], const double c[3], double *length)
 {
+    const double sides[3] = {gap(a, b), gap(b, c), gap(c, a)};
     int longest = 0;
-    double most = -1;
-    for (int k = 0; k < 3; k++) {
-        const reach_spot *from = &whole->corner[k], *to = &whole->corner[(k + 1) % 3];
-        double n[4], length = gap(from->at, to->at);
-        if (length > most) {
-            most = length;
-            longest = k;
-        }
-        if (from->nearest == to->nearest || whole->depth % 4 == 3 || !part(survey, from->nearest, to->nearest, n))
-            continue;
-        double before = n[0] * from->at[0] + n[1] * from->at[1] + n[2] * from->at[2] - n[3];
-        double after = n[0] * to->at[0] + n[1] * to->at[1] + n[2] * to->at[2] - n[3];
-        double share = before / (before - after);
-        if (share > 1e-3 && share < 1 - 1e-3) {
-            halve(survey, whole, k, share, out);
-            return;
+    for (int k = 1; k < 3; k++)
+        longest = sides[k] > sides[longest] ? k : longest;
+    *length = sides[longest];
+    return longest;
+}
+
+/* A piece that is much larger than the triangle nearest to its middle is halved. Else it is cut where one of its sides
+ * runs through a wall of that triangle: what is within all walls is near the triangle everywhere. A cut next to a
+ * corner would leave a piece as it was. */
+static void cut(const reach_survey *survey, const reach_piece *whole, uint32_t nearest, reach_piece out[2])
+{
+    const reach_spot *corner = whole->corner;
+    const uint32_t *names = survey->to->corners + 3 * (uint64_t)nearest;
+    double walls[3][4], p[3][3], length, other;
+    for (int k = 0; k < 3; k++)
+        hewn_triangle_point(survey->to, names[k], p[k]);
+    const int longest = longest_of(corner[0].at, corner[1].at, corner[2].at, &length);
+    (void)longest_of(p[0], p[1], p[2], &other);
+    walls_of(p, walls);
+    for (int w = 0; w < 3 && length < 2 * other && whole->depth % 8 != 7; w++) {
+        double off[3];
+        for (int k = 0; k < 3; k++)
+            off[k] = walls[w][0] * corner[k].at[0] + walls[w][1] * corner[k].at[1] + walls[w][2] * corner[k].at[2] -
+                     walls[w][3];
+        for (int k = 0; k < 3; k++) {
+            const double share = off[k] / (off[k] - off[(k + 1) % 3]);
+            if (share > 1e-3 && share < 1 - 1e-3) {
+                halve(survey, whole, k, share, out);
+                return;
+            }
         }
     }
     halve(survey, whole, longest, 0.5, out);
@@ -166,12 +158,13 @@ static void prove(reach_survey *survey, const reach_piece *whole)
         survey->low = whole->corner[k].distance > survey->low ? whole->corner[k].distance : survey->low;
     double least = bound(survey, whole), enough = survey->low * (1 + survey->tolerance);
     enough = enough > survey->accept ? enough : survey->accept;
+    uint32_t nearest = whole->corner[0].nearest;
     if (least > enough) { /* the triangle that is nearest to the middle may serve all corners */
         double middle[3];
         for (int axis = 0; axis < 3; axis++)
             middle[axis] = (whole->corner[0].at[axis] + whole->corner[1].at[axis] + whole->corner[2].at[axis]) / 3;
-        const reach_spot best = look(survey, middle, whole->corner[0].nearest);
-        double by = bound_by(survey, whole, best.nearest);
+        nearest = look(survey, middle, nearest).nearest;
+        double by = bound_by(survey, whole, nearest);
         least = by < least ? by : least;
     }
     if (least <= enough || whole->depth >= MOST_DEPTH || survey->pieces >= MOST_PIECES) {
@@ -180,7 +173,7 @@ static void prove(reach_survey *survey, const reach_piece *whole)
     }
     reach_piece halves[2];
     survey->pieces += 2;
-    cut(survey, whole, halves);
+    cut(survey, whole, nearest, halves);
     prove(survey, &halves[0]);
     prove(survey, &halves[1]);
 }

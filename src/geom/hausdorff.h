@@ -13,8 +13,9 @@ typedef struct hewn_reach {
 /* From the triangles of `from` to those of `to`, of which `bvh` is the hierarchy. Each triangle is cut up until every
  * piece is proven: the distance to one triangle is convex, so over a piece it is greatest at a corner, and the least of
  * that over a few triangles bounds the piece (after Guthe, Borodin and Klein 2005, 'Fast and accurate Hausdorff
- * distance calculation between meshes'). Pieces are cut along the planes that part the nearest of two neighbouring
- * triangles, so that surfaces which lie in each other need no endless pieces.
+ * distance calculation between meshes'). Pieces are cut along
+ * the planes through the edges of the nearest triangle and its normal, so that surfaces which lie in each other need no
+ * endless pieces.
  *
  * `high` is above `low` by the share `tolerance` of it, or by `floor`, a length, if that is more; in degenerate places
  * where pieces do not end it may be more. `limit` and `far` (or NULL), one a triangle of `from`: 1 where the triangle
