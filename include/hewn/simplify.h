@@ -102,6 +102,11 @@ HEWN_API void hewn_simplified_destroy(hewn_simplified *simplified);
 HEWN_API hewn_result hewn_model_simplify(hewn_model *model, const hewn_simplify_desc *desc,
                                          hewn_simplify_report *report, hewn_error *error);
 
+/* The same of the extraction's triangles; normals, where there are any, are made anew. Positions become floats again
+ * after the distance was proven. */
+HEWN_API hewn_result hewn_triangles_simplify(hewn_triangles *triangles, const hewn_simplify_desc *desc,
+                                             hewn_simplify_report *report, hewn_error *error);
+
 #ifdef __cplusplus
 }
 #endif

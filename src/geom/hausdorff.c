@@ -253,8 +253,8 @@ hewn_result hewn_surface_reach(const hewn_triangle_view *from, const hewn_triang
         all.low = look_at_vertices(&all, from, spots, used);
         all.accept = all.low * (1 + desc->tolerance);
         all.accept = all.low + desc->floor > all.accept ? all.low + desc->floor : all.accept;
-        if (desc->far && all.accept > desc->limit - slack) /* for the sake of `far` */
-            all.accept = desc->limit - slack;
+        if (desc->far && all.accept > desc->limit - 2 * slack) /* for the sake of `far` */
+            all.accept = desc->limit - 2 * slack;
         all.accept = all.accept > 0 ? all.accept : 0;
         prove_all(&all, from, spots, desc, slack, out);
     }

@@ -208,8 +208,11 @@ static hewn_result run(simplify_promise *job, hewn_error *error)
         hewn_simplify_result_release(job->out);
         HEWN_TRY(attempt(job, &again, error));
     }
+    const double proven = job->report->distance;
     if (job->in->desc.measure)
         HEWN_TRY(measure(job, false, error));
+    if (job->allowed > 0) /* both are bounds */
+        job->report->distance = fmin(job->report->distance, proven);
     if (job->allowed > 0 && job->report->distance > job->allowed)
         return hewn_fail(error, HEWN_LIMIT, "an error of %g is too small for the rounding of these coordinates",
                          job->allowed);
