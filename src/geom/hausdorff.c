@@ -9,6 +9,9 @@
 /* A triangle in this many pieces, or at this depth, is taken as it stands. */
 enum { MOST_PIECES = 1 << 20, MOST_DEPTH = 90 };
 
+/* Fewer vertices or triangles are done by one thread. */
+enum { FEW = 2000 };
+
 /* A corner of a piece: where it is, and which triangle is nearest. */
 typedef struct reach_spot {
     double at[3], distance;
@@ -184,7 +187,7 @@ static void prove(reach_survey *survey, const reach_piece *whole)
 static double rounding(const hewn_triangle_view *mesh)
 {
     double most = 0;
-#pragma omp parallel for schedule(static) reduction(max : most)
+#pragma omp parallel for schedule(static) reduction(max : most) if (mesh->vertex_count > FEW)
     for (uint64_t v = 0; v < mesh->vertex_count; v++) {
         double at[3];
         hewn_triangle_point(mesh, (uint32_t)v, at);
@@ -202,7 +205,7 @@ static double look_at_vertices(const reach_survey *survey, const hewn_triangle_v
     double low = 0;
     for (uint64_t c = 0; c < 3 * from->triangle_count; c++)
         used[from->corners[c]] = 1;
-#pragma omp parallel for schedule(dynamic) reduction(max : low)
+#pragma omp parallel for schedule(dynamic) reduction(max : low) if (from->vertex_count > FEW)
     for (uint64_t r = 0; r < runs; r++) {
         uint32_t guess = 0;
         for (uint64_t v = r * run; v < (r + 1) * run && v < from->vertex_count; v++) {
@@ -222,7 +225,7 @@ static void prove_all(const reach_survey *all, const hewn_triangle_view *from, c
                       const hewn_reach_desc *desc, double slack, hewn_reach *out)
 {
     double low = all->low, high = all->accept;
-#pragma omp parallel for schedule(dynamic, 256) reduction(max : low, high)
+#pragma omp parallel for schedule(dynamic, 256) reduction(max : low, high) if (from->triangle_count > FEW)
     for (uint64_t t = 0; t < from->triangle_count; t++) {
         reach_survey one = *all;
         one.low = one.high = 0;

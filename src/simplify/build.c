@@ -99,7 +99,7 @@ static void match(simplify_work *work, uint32_t v, const uint64_t *sides, size_t
 static void gather_sides(const simplify_work *work, uint32_t *first, uint64_t *sides)
 {
     uint32_t halves = 3 * work->face_count;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t h = 0; h < halves; h++) {
         uint32_t from = work->tail[h], to = simplify_head(work, h), least = from < to ? from : to;
 #pragma omp atomic
@@ -110,7 +110,7 @@ static void gather_sides(const simplify_work *work, uint32_t *first, uint64_t *s
         sum += first[v];
         first[v] = sum;
     }
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t h = 0; h < halves; h++) {
         uint32_t from = work->tail[h], to = simplify_head(work, h), least = from < to ? from : to, place;
 #pragma omp atomic capture
@@ -125,7 +125,7 @@ static hewn_result pair_sides(simplify_work *work, hewn_error *error)
     uint64_t *sides = hewn_alloc(work->face_count, 3 * sizeof *sides);
     if (first && sides) {
         gather_sides(work, first, sides);
-#pragma omp parallel for schedule(dynamic, 4096)
+#pragma omp parallel for schedule(dynamic, 4096) if (work->vertex_count > SIMPLIFY_FEW)
         for (uint32_t v = 0; v < work->vertex_count; v++) {
             sort_sides(sides + first[v], first[v + 1] - first[v]);
             match(work, v, sides + first[v], first[v + 1] - first[v]);
@@ -155,7 +155,7 @@ static void start_fans(simplify_work *work, uint32_t *corners)
 /* A vertex whose fan does not have all its corners has several fans. */
 static void walk_fans(simplify_work *work, const uint32_t *corners)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         uint32_t first = work->half[v], h = first, count = 0;
         if (first == SIMPLIFY_GONE)
@@ -194,7 +194,7 @@ hewn_result hewn_simplify_build(simplify_work *work, const hewn_polygons *triang
 {
     HEWN_TRY(allocate(work, triangles, error));
     find_frame(work, triangles);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         for (size_t axis = 0, at = 3 * (size_t)v; axis < 3; axis++)
             work->positions[at + axis] = simplify_inward(work, triangles->positions[at + axis], axis);

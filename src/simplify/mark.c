@@ -75,11 +75,11 @@ hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error)
     work->facing = hewn_alloc_zero(work->vertex_count, 3 * sizeof *work->facing);
     if (!work->flags || !work->key || !work->quadrics || !work->facing)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying %u triangles", work->face_count);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t h = 0; h < halves; h++)
         if (simplify_name(work, h) == h)
             mark_edge(work, h, cosine);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         const uint32_t origin = work->origins[v];
         const bool frozen =

@@ -68,7 +68,7 @@ static uint32_t *order_vertices(const simplify_work *work, uint32_t round, uint3
         for (uint32_t v = 0; v < work->vertex_count; v++)
             if (work->half[v] != SIMPLIFY_GONE)
                 keys[(*count)++].vertex = v;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
         for (uint32_t i = 0; i < *count; i++)
             keys[i].key = key_of(simplify_at(work, keys[i].vertex), shift);
         const keyed *sorted = sort_keys(keys, keys + *count, *count);
@@ -93,7 +93,7 @@ static bool move(void **items, size_t size, const uint32_t *order, uint32_t coun
     const char *from = *items;
     if (!to)
         return false;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count > SIMPLIFY_FEW)
     for (uint32_t i = 0; i < count; i++)
         memcpy(to + i * size, from + order[i] * size, size);
     hewn_free(*items);
@@ -108,7 +108,7 @@ static uint32_t *order_faces(const simplify_work *work, const uint32_t *number, 
     uint32_t *order = hewn_alloc(work->live_faces, sizeof *order);
     uint32_t *least = hewn_alloc(work->face_count, sizeof *least);
     if (places && order && least) {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
         for (uint32_t f = 0; f < work->face_count; f++) {
             const uint32_t *corner = work->tail + 3 * (size_t)f;
             least[f] = HEWN_NONE;
@@ -144,7 +144,7 @@ static bool move_halves(simplify_work *work, const uint32_t *order, const uint32
     bool done = place && tail && twin && (key || !work->key) && (flags || !work->flags) && (wedge || !work->wedge);
     for (uint32_t f = 0; done && f < work->live_faces; f++)
         place[order[f]] = f;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t f = 0; f < (done ? work->live_faces : 0); f++)
         for (uint32_t k = 0; k < 3; k++) {
             const uint32_t h = 3 * f + k, old = 3 * order[f] + k, other = work->twin[old];
@@ -158,7 +158,7 @@ static bool move_halves(simplify_work *work, const uint32_t *order, const uint32
             if (wedge)
                 wedge[h] = work->wedge[old];
         }
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t v = 0; v < (done ? work->vertex_count : 0); v++)
         if (work->half[v] != SIMPLIFY_GONE && work->rank[v] != SIMPLIFY_APART)
             work->half[v] = 3 * place[work->half[v] / 3] + work->half[v] % 3;

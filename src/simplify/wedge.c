@@ -95,7 +95,7 @@ hewn_result hewn_simplify_weigh_wedges(simplify_work *work, hewn_error *error)
     wedges->sums = hewn_alloc_zero(wedges->count, simplify_wedge_stride(wedges) * sizeof *wedges->sums);
     if (!wedges->sums)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the attributes of %u corners", wedges->count);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         const uint32_t first = work->half[v];
         uint32_t h = first;

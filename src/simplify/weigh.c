@@ -56,10 +56,10 @@ static void weigh_vertex(simplify_work *work, uint32_t v)
 hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error)
 {
     HEWN_TRY(hewn_simplify_weigh_wedges(work, error));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t v = 0; v < work->vertex_count; v++)
         weigh_vertex(work, v);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t h = 0; h < 3 * work->face_count; h++)
         if (simplify_name(work, h) == h) {
             work->key[h] = (float)hewn_simplify_plan(work, h).cost;

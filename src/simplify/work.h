@@ -17,6 +17,9 @@
 
 #define SIMPLIFY_GONE 0xFFFFFFFEu
 
+/* Meshes of fewer vertices are done by one thread: waking others takes longer. */
+enum { SIMPLIFY_FEW = 8000 };
+
 /* What a vertex may do. A higher rank stays where a lower one joins it; vertices from CORNER on never move and never
  * join another, and those that are APART take no part in any collapse. */
 typedef enum simplify_rank {
