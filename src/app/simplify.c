@@ -48,14 +48,15 @@ const hewn_command hewn_command_simplify = {
     .name = "simplify",
     .summary = "make a mesh file of fewer triangles",
     .usage = "FILE -o FILE [OPTION]...",
-    .about = "Reads a mesh (.glb, .gltf, .obj, .ply, .stl, .off, also with .gz), collapses edges,\n"
-             "those first that change its shape least, and writes it with its attributes.\n"
-             "A manifold mesh stays manifold, with as many parts, holes and handles as before.\n",
+    .about = "Reads a mesh (.glb, .gltf, .obj, .ply, .stl, .off, also with .gz), collapses its\n"
+             "edges, those first that change its shape least, and writes it with its\n"
+             "attributes. A manifold mesh stays manifold, with as many parts, holes and\n"
+             "handles as before.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
              "  hewn simplify scan.ply -o small.glb --ratio 0.1\n"
              "  hewn simplify part.stl -o part.stl --error 0.05 --lock features:30\n"
-             "  hewn simplify chair.obj -o chair.obj --faces 2000 --preserve uv,normal --report report.json\n",
+             "  hewn simplify chair.obj -o small.obj --faces 2000 --report report.json\n",
     .run = run,
 };

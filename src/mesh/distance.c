@@ -56,9 +56,12 @@ static void release(measured_surface *surface)
 static double diagonal(const measured_surface both[2])
 {
     double square = 0;
-    float lo[2][3], hi[2][3];
-    for (int i = 0; i < 2; i++)
-        hewn_boxes4_all(&both[i].bvh.level[both[i].bvh.level_count - 1][0], lo[i], hi[i]);
+    float lo[2][3] = {0}, hi[2][3] = {0};
+    for (int i = 0; i < 2; i++) {
+        const hewn_boxes4 *root = both[i].bvh.level[both[i].bvh.level_count - 1];
+        if (root)
+            hewn_boxes4_all(root, lo[i], hi[i]);
+    }
     for (int axis = 0; axis < 3; axis++) {
         double least = fmin((double)lo[0][axis], (double)lo[1][axis]);
         double side = fmax((double)hi[0][axis], (double)hi[1][axis]) - least;

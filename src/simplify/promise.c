@@ -188,7 +188,9 @@ static hewn_result attempt(simplify_promise *job, bool *again, hewn_error *error
     *again = false;
     HEWN_TRY(hewn_simplify_once(job->in, job->out, job->report, error));
     job->report->runs++;
-    if (job->allowed > 0) {
+    if (!job->offending || !job->in->frozen)
+        return HEWN_OK;
+    if (job->far[0] && job->far[1] && job->in->limits) {
         HEWN_TRY(measure(job, true, error));
         mark_far(job);
         *again = tighten(job, false) > 0;
