@@ -80,7 +80,7 @@ static bool are_alike(const hewn_model *model, uint32_t preserve, uint32_t a, ui
 }
 
 /* Corners by vertex, in order. */
-static bool list_corners(const hewn_model *model, uint64_t count, uint32_t *first, uint32_t *list)
+static void list_corners(const hewn_model *model, uint64_t count, uint32_t *first, uint32_t *list)
 {
     for (uint64_t c = 0; c < count; c++)
         first[model->corners[c] + 1]++;
@@ -88,7 +88,6 @@ static bool list_corners(const hewn_model *model, uint64_t count, uint32_t *firs
         first[v + 1] += first[v];
     for (uint64_t c = count; c-- > 0;)
         list[--first[model->corners[c] + 1]] = (uint32_t)c;
-    return true;
 }
 
 /* Afterwards first[v + 1] is where the list of v begins. Each corner takes the wedge of the first that is like it. */
@@ -98,8 +97,9 @@ static hewn_result find_wedges(const hewn_model *model, uint32_t preserve, simpl
     uint32_t *first = hewn_alloc_zero(model->vertex_count + 2, sizeof *first);
     uint32_t *list = hewn_alloc(count, sizeof *list);
     out->corners = hewn_alloc(count, sizeof *out->corners);
-    if (first && list && out->corners && list_corners(model, count, first, list)) {
+    if (first && list && out->corners) {
         uint32_t wedges = 0;
+        list_corners(model, count, first, list);
         for (uint64_t v = 0; v < model->vertex_count; v++) {
             const uint32_t begin = first[v + 1], end = v + 1 < model->vertex_count ? first[v + 2] : (uint32_t)count;
             for (uint32_t i = begin; i < end; i++) {
