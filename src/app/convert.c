@@ -1,9 +1,12 @@
 #include "app/file_arguments.h"
 #include "app/file_command.h"
+#include "app/simplify_arguments.h"
 #include "app/smooth_arguments.h"
+#include "base/error.h"
 
 static const hewn_option options[] = {
     HEWN_OPTION_OUTPUT,
+    HEWN_OPTION_SIMPLIFY,
     {0, "smooth", "METHOD",
      "Smooth it on the way by taubin, laplacian, cotan, implicit, bilateral or hc with their defaults; `hewn smooth` "
      "has "
@@ -19,6 +22,10 @@ static const hewn_option options[] = {
 static hewn_result read(const hewn_arguments *arguments, hewn_file_steps *steps, hewn_file_job_desc *desc,
                         hewn_error *error)
 {
+    bool simplify;
+    HEWN_TRY(hewn_simplify_target_read(arguments, &steps->simplify, &simplify, error));
+    desc->simplify = simplify ? &steps->simplify : NULL;
+    steps->simplify.measure = simplify && desc->report;
     const char *method = hewn_arguments_value(arguments, "smooth");
     if (!method)
         return HEWN_OK;
@@ -28,6 +35,8 @@ static hewn_result read(const hewn_arguments *arguments, hewn_file_steps *steps,
 
 static void print(const hewn_file_job_desc *desc, const hewn_file_report *report)
 {
+    if (desc->simplify)
+        hewn_simplify_print(&report->simplify);
     if (desc->smooth)
         hewn_smooth_print(report);
 }

@@ -25,6 +25,7 @@ static const room rooms[] = {
     {"mesh", "base geom"},
     {"smooth", "base geom mesh"},
     {"subdivide", "base geom mesh"},
+    {"simplify", "base geom mesh"},
     {"field", "base geom"},
     {"gpu", "base"},
     {"eval", "base geom field gpu"},
@@ -32,7 +33,7 @@ static const room rooms[] = {
     {"render", "base geom field gpu eval"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth subdivide field gpu eval iso render scene io"},
+    {"pipeline", "base geom volume mesh smooth subdivide simplify field gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -44,11 +45,14 @@ typedef struct header {
 } header;
 
 static const header headers[] = {
-    {"base", "open"},     {"field", "open"},          {"triangles", "open"},    {"device", "gpu"},
-    {"check", "mesh"},    {"units", "open"},          {"model", "mesh"},        {"mesh", "mesh"},
-    {"repair", "mesh"},   {"mesh_views", "mesh"},     {"extract", "iso"},       {"scene", "scene"},
-    {"io", "io"},         {"job", "pipeline"},        {"file_job", "pipeline"}, {"hewn", "hewn"},
-    {"smooth", "smooth"}, {"subdivide", "subdivide"}, {"volume", "volume"},     {"volume_io", "io"},
+    {"base", "open"},       {"field", "open"},    {"triangles", "open"},
+    {"device", "gpu"},      {"check", "mesh"},    {"units", "open"},
+    {"model", "mesh"},      {"mesh", "mesh"},     {"repair", "mesh"},
+    {"mesh_views", "mesh"}, {"extract", "iso"},   {"scene", "scene"},
+    {"io", "io"},           {"job", "pipeline"},  {"file_job", "pipeline"},
+    {"hewn", "hewn"},       {"smooth", "smooth"}, {"subdivide", "subdivide"},
+    {"volume", "volume"},   {"volume_io", "io"},  {"simplify", "simplify"},
+    {"distance", "mesh"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
