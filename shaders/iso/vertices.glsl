@@ -27,14 +27,15 @@ bool finite(float value)
 }
 
 /* Where the field changes sign along the edge, as a share of it. False position with the Illinois weight (Dowell and Jarratt 1971),
- * halving where the values give no better guess; the bracket always holds an inside end and an outside end. */
-float crossing(vec3 start, uint axis, float side, float at_start, float at_end)
+ * halving where the values give no better guess; the bracket always holds an inside end and an outside end. Where it is
+ * `known`, nothing is searched. */
+float crossing(vec3 start, uint axis, float side, float at_start, float at_end, bool known)
 {
     float a = 0.0, b = 1.0, fa = at_start, fb = at_end, guess = 0.5;
     float enough = NEAR_ENOUGH * abs(at_end - at_start);
     bool start_inside = at_start < 0.0;
     int kept = 0;
-    for (uint trial = 0u; trial < MOST_TRIALS; trial++) {
+    for (uint trial = 0u; trial < MOST_TRIALS && !known; trial++) {
         float slope = fb - fa;
         guess = a - fa * (b - a) / slope;
         if (!(finite(slope) && guess > a && guess < b) || trial > 8u)
@@ -65,16 +66,23 @@ void write_vertex(uint vertex, vec3 at, vec3 normal)
     }
 }
 
+void note_vertex(bool capped, float residual)
+{
+    if (capped)
+        atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], 1u);
+    else if (finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
+        atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
+}
+
 void main()
 {
     uint vertex = invocation();
     if (vertex >= push.count)
         return;
-    uint slot = floatBitsToUint(push.positions.at[3u * vertex]);
+    uint brick = floatBitsToUint(push.positions.at[3u * vertex]);
     uint record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
     uint axis = record >> 9;
-    field_select(slot);
-    uvec3 first = 8u * unpack_brick(push.bricks.at[slot]) + (uvec3(record, record >> 3, record >> 6) & 7u);
+    uvec3 first = 8u * unpack_brick(brick) + (uvec3(record, record >> 3, record >> 6) & 7u);
     vec3 start;
     for (uint i = 0u; i < 3u; i++)
         start[i] = sample_coordinate(push.grid, i, first[i]);
@@ -84,29 +92,24 @@ void main()
     precise vec3 last = start;
     last[axis] = end;
     float at_end = field_point(last.x, last.y, last.z);
-    bool capped = push.grid.open == 0u;
-    bool cap_start = capped && first[axis] == 0u && at_start < 0.0;
-    bool cap_end = capped && first[axis] + 1u == push.grid.cells[axis] && at_end < 0.0;
+    bool closed = push.grid.open == 0u;
+    bool cap_start = closed && first[axis] == 0u && at_start < 0.0;
+    bool cap_end = closed && first[axis] + 1u == push.grid.cells[axis] && at_end < 0.0;
+    bool capped = cap_start || cap_end;
     vec3 outward = vec3(0.0);
     outward[axis] = cap_start || (!cap_end && at_end < 0.0) ? -1.0 : 1.0;
-    if (cap_start || cap_end) {
-        write_vertex(vertex, cap_start ? start : last, outward);
-        atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], 1u);
-        return;
-    }
     float least = push.dual != 0u ? 0.0 : NEAREST;
-    float t = clamp(crossing(start, axis, side, at_start, at_end), least, 1.0 - least);
+    float t = clamp(crossing(start, axis, side, at_start, at_end, capped), least, 1.0 - least);
     precise vec3 at = start;
-    at[axis] = start[axis] + side * t;
+    at[axis] = capped ? (cap_start ? start[axis] : end) : start[axis] + side * t;
     vec4 gradient = field_gradient(at.x, at.y, at.z);
     float size = length(gradient.xyz);
-    bool sloped = finite(size) && size > 0.0;
+    bool sloped = !capped && finite(size) && size > 0.0;
     /* Dual methods ask for the tangent plane, not for the place on the edge: what the search left is taken off. */
     float off = gradient.w / size;
     if (push.dual != 0u && sloped && abs(off) <= push.grid.cell * CORRECTED)
         at -= off * (gradient.xyz / size);
+    /* Written in one place: a CPU driver runs each write for all lanes, and writing costs more than most fields. */
     write_vertex(vertex, at, sloped ? gradient.xyz / size : outward);
-    float residual = abs(gradient.w) / (size * push.grid.cell);
-    if (sloped && finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
-        atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
+    note_vertex(capped, sloped ? abs(gradient.w) / (size * push.grid.cell) : 0.0);
 }

@@ -30,6 +30,7 @@ struct hewn_extractor {
     hewn_device *device;
     hewn_code *code;
     hewn_scan *scan;
+    bool on_host; /* the host does what needs no field between signs and vertices: see iso/host_surface.h */
     hewn_buffer table;                                            /* hewn_mc_table */
     hewn_program *cull, *signs, *vertices;                        /* made of the field */
     hewn_program *choose, *keep_lists, *gather;                   /* instead of `cull` where it is in lists */
