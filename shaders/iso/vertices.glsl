@@ -1,18 +1,13 @@
-/* Solves each crossing on the field itself, and takes its normal from the exact gradient there: one invocation a vertex. */
+/* Solves each crossing on the field itself, and takes its normal from the exact gradient there: one invocation for
+ * HEWN_VERTICES_EACH of them. */
 #include "iso/grid.h"
+#include "iso/root_search.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {
     hewn_vertex_push push;
 };
-
-/* No vertex comes nearer to a grid point than this share of a cell, so that no two of them fall together. */
-const float NEAREST = 1.25 / 4096.0;
-/* A value that the edge's mean slope takes back in this share of a cell ends the search. */
-const float NEAR_ENOUGH = 1.0e-5;
-const uint MOST_TRIALS = 24u;
-const float CORRECTED = 1.0e-3; /* of a cell: a place that is farther off than this lies on no surface */
 
 float value_along(vec3 start, uint axis, float side, float t)
 {
@@ -21,41 +16,15 @@ float value_along(vec3 start, uint axis, float side, float t)
     return field_point(at.x, at.y, at.z);
 }
 
-bool finite(float value)
-{
-    return abs(value) <= 3.0e38;
-}
-
-/* Where the field changes sign along the edge, as a share of it. False position with the Illinois weight (Dowell and Jarratt 1971),
- * halving where the values give no better guess; the bracket always holds an inside end and an outside end. Where it is
- * `known`, nothing is searched. */
+/* Nothing is searched where the root is `known`. */
 float crossing(vec3 start, uint axis, float side, float at_start, float at_end, bool known)
 {
-    float a = 0.0, b = 1.0, fa = at_start, fb = at_end, guess = 0.5;
-    float enough = NEAR_ENOUGH * abs(at_end - at_start);
-    bool start_inside = at_start < 0.0;
-    int kept = 0;
-    for (uint trial = 0u; trial < MOST_TRIALS && !known; trial++) {
-        float slope = fb - fa;
-        guess = a - fa * (b - a) / slope;
-        if (!(finite(slope) && guess > a && guess < b) || trial > 8u)
-            guess = 0.5 * (a + b);
-        float value = value_along(start, axis, side, guess);
-        if (abs(value) <= enough || b - a < 2.0e-6)
-            break;
-        if ((value < 0.0) == start_inside) {
-            a = guess;
-            fa = value;
-            fb = kept == 1 ? 0.5 * fb : fb;
-            kept = 1;
-        } else {
-            b = guess;
-            fb = value;
-            fa = kept == 2 ? 0.5 * fa : fa;
-            kept = 2;
-        }
+    Search search = search_begin(start[axis], start[axis] + side, at_start, at_end, known);
+    for (uint trial = 0u; trial < MOST_TRIALS && !search.settled; trial++) {
+        next_guess(search, trial);
+        take_value(search, value_along(start, axis, side, search.guess));
     }
-    return guess;
+    return search.guess;
 }
 
 void write_vertex(uint vertex, vec3 at, vec3 normal)
@@ -66,19 +35,9 @@ void write_vertex(uint vertex, vec3 at, vec3 normal)
     }
 }
 
-void note_vertex(bool capped, float residual)
+/* A crossing's vertex; the residual grows, or the number of vertices that were cut off at the bounds. */
+void solve(uint vertex, inout float most, inout uint caps)
 {
-    if (capped)
-        atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], 1u);
-    else if (finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
-        atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
-}
-
-void main()
-{
-    uint vertex = invocation();
-    if (vertex >= push.count)
-        return;
     uint brick = floatBitsToUint(push.positions.at[3u * vertex]);
     uint record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
     uint axis = record >> 9;
@@ -111,5 +70,23 @@ void main()
         at -= off * (gradient.xyz / size);
     /* Written in one place: a CPU driver runs each write for all lanes, and writing costs more than most fields. */
     write_vertex(vertex, at, sloped ? gradient.xyz / size : outward);
-    note_vertex(capped, sloped ? abs(gradient.w) / (size * push.grid.cell) : 0.0);
+    float residual = sloped ? abs(gradient.w) / (size * push.grid.cell) : 0.0;
+    most = finite(residual) ? max(most, residual) : most;
+    caps += capped ? 1u : 0u;
+}
+
+void main()
+{
+    uint local = gl_LocalInvocationID.x, begin = HEWN_VERTICES_EACH * (invocation() - local) + local;
+    float most = 0.0;
+    uint caps = 0u;
+    for (uint i = 0u; i < HEWN_VERTICES_EACH; i++) {
+        uint vertex = begin + gl_WorkGroupSize.x * i;
+        if (vertex < push.count)
+            solve(vertex, most, caps);
+    }
+    if (caps != 0u)
+        atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], caps);
+    if (floatBitsToUint(most) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
+        atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(most));
 }

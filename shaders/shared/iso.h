@@ -109,6 +109,9 @@ struct hewn_spread_push {
     HEWN_UINTS indices;  /* out: slot, sample + 512 * pattern + 131072 * triangle in each triangle's first two words */
 };
 
+/* Vertices that an invocation solves one after the other. */
+#define HEWN_VERTICES_EACH 16u
+
 struct hewn_vertex_push {
     HEWN_GRID grid;
     HEWN_UINT count;

@@ -177,7 +177,8 @@ void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_gr
                                     .positions = crossings->positions->address,
                                     .normals = crossings->normals->address,
                                     .summary = crossings->summary};
-    hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms, hewn_groups_for(crossings->count, 64));
+    hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms,
+                           hewn_groups_for(crossings->count, 64 * HEWN_VERTICES_EACH));
 }
 
 /* Vertices on edges, and those in cells of the trilinear interpolant's topology. */
