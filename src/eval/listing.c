@@ -254,7 +254,11 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     if (!step->function)
         return;
     bool guard = flavour == INTERVAL && hewn_listing_needs_guard(listing, step);
-    hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", step->function);
+    bool known = flavour != INTERVAL && listing->near && step->sure;
+    const char *function = known && step->op == HEWN_OP_MIN   ? "lesser"
+                           : known && step->op == HEWN_OP_MAX ? "greater"
+                                                              : step->function;
+    hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", function);
     write_operands(listing, step, flavour, false, text);
     for (uint32_t i = 0; i < step->parameter_count; i++) {
         hewn_text_append(text, ",");
@@ -316,8 +320,10 @@ static void write_row(const hewn_listing *listing, hewn_text *text)
     hewn_text_append(text, " < 0.0) << k;\n}\nreturn bits;\n}\n");
 }
 
-void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text)
+void hewn_listing_write(const hewn_listing *of, uint32_t flavours, hewn_text *text)
 {
+    hewn_listing view = *of, *listing = &view;
+    view.near = (flavours & HEWN_FLAVOUR_NEAR) != 0;
     if (flavours & HEWN_FLAVOUR_POINT)
         write_function(listing, POINT, "float field_point(float x, float y, float z)\n{\n", text);
     if (flavours & HEWN_FLAVOUR_INTERVAL)
