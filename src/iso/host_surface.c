@@ -210,16 +210,23 @@ static void derive_corners(corner_table *out)
     }
 }
 
-/* Puts the numbers of vertices to the places of their edges: of those along `axis` that brick `slot` owns and, along
- * the axes of `link`, has in its first layer of samples. */
-static void place_vertices(const hewn_host_surface *surface, uint32_t slot, uint32_t link, uint32_t axis,
-                           uint32_t *numbers)
+/* Puts the numbers of vertices to the places of the edges along `axis` that a brick owns. */
+static void place_own(const uint32_t *pairs, uint32_t *numbers)
 {
-    const uint32_t *pairs = surface->edges + 2 * ((uint64_t)slot * HEWN_BRICK_EDGE_WORDS + axis * HEWN_BRICK_WORDS);
+    uint32_t number = pairs[1];
+    for (uint32_t word = 0; word < HEWN_BRICK_WORDS; word++)
+        for (uint32_t mask = pairs[2 * word]; mask != 0; mask &= mask - 1) {
+            uint32_t bit = first_bit(mask);
+            numbers[place_of(bit & 7, 4 * (word & 1) + (bit >> 3), word >> 1)] = number++;
+        }
+}
+
+/* The same of the upper neighbour at `link`, for edges in its first layer of samples along the axes of `link`. */
+static void place_beside(const uint32_t *pairs, uint32_t link, uint32_t *numbers)
+{
     uint32_t side_x = 8 * (link & 1), side_y = 8 * (link >> 1 & 1), side_z = 8 * (link >> 2 & 1);
     uint32_t seen = (side_x ? 0x01010101u : ~0u) & (side_y ? 0xFFu : ~0u);
     uint32_t words = side_z ? 2 : HEWN_BRICK_WORDS, step = side_y ? 2 : 1;
-    numbers += axis * AN_AXIS;
     for (uint32_t word = 0; word < words; word += step) {
         uint32_t whole = pairs[2 * word], number = pairs[2 * word + 1];
         for (uint32_t mask = whole & seen; mask != 0; mask &= mask - 1) {
@@ -231,15 +238,23 @@ static void place_vertices(const hewn_host_surface *surface, uint32_t slot, uint
     }
 }
 
+static void place_vertices(const hewn_host_surface *surface, const uint32_t links[HEWN_BRICK_LINKS], uint32_t *numbers)
+{
+    for (uint32_t link = 0; link < HEWN_BRICK_LINKS; link++)
+        for (uint32_t axis = 0; axis < 3 && links[link] < HEWN_ALL_OUTSIDE; axis++) {
+            uint64_t first = (uint64_t)links[link] * HEWN_BRICK_EDGE_WORDS + axis * HEWN_BRICK_WORDS;
+            if (link == 0)
+                place_own(surface->edges + 2 * first, numbers + axis * AN_AXIS);
+            else if (!(link >> axis & 1))
+                place_beside(surface->edges + 2 * first, link, numbers + axis * AN_AXIS);
+        }
+}
+
 /* Numbers are set only where edges are crossed, and only those are read. */
 static void triangulate_brick(const hewn_host_surface *surface, const corner_table *table, uint32_t slot)
 {
     uint32_t numbers[3 * AN_AXIS];
-    const uint32_t *links = surface->links + (uint64_t)slot * HEWN_BRICK_LINKS;
-    for (uint32_t link = 0; link < HEWN_BRICK_LINKS; link++)
-        for (uint32_t axis = 0; axis < 3 && links[link] < HEWN_ALL_OUTSIDE; axis++)
-            if (!(link >> axis & 1))
-                place_vertices(surface, links[link], link, axis, numbers);
+    place_vertices(surface, surface->links + (uint64_t)slot * HEWN_BRICK_LINKS, numbers);
     walk own = walk_begin(surface, slot);
     uint32_t *out = surface->indices + (uint64_t)3 * surface->triangle_bases[slot];
     for (uint32_t z = 0; z < 8; z++) {
