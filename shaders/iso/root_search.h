@@ -1,7 +1,8 @@
 /* GLSL only: where a field changes sign along an edge, as a share of it. A bracket always holds an inside end and an
- * outside end. The first guess and mostly the second is where the chord between the ends passes zero. Later ones follow the line through
- * the two newest places on one side of the root (a bracketed secant, after Dekker 1969): for a field of flat pieces that is
- * exact once both lie on the root's piece. Halving where the values give no better guess: a chord from a plateau would only creep. */
+ * outside end. The first guess and mostly the second is where the chord between the ends passes zero. Later ones follow
+ * the line through the two newest places on one side of the root (secants in a bracket, after Dekker 1969): for a field
+ * of flat pieces that is exact once both lie on the root's piece. Halving where the values give no better guess: a
+ * chord from a plateau would only creep. */
 #ifndef HEWN_SHADERS_ISO_ROOT_SEARCH_H
 #define HEWN_SHADERS_ISO_ROOT_SEARCH_H
 
@@ -18,10 +19,10 @@ bool finite(float value)
 }
 
 struct Search {
-    float a, b, fa, fb;     /* the bracket */
-    float guess, value;     /* the last place asked, */
-    float other, at_other;  /* and the end of the bracket that it took the place of */
-    float enough, grain;    /* what ends the search: a value, and steps so small that floats hardly follow */
+    float a, b, fa, fb;    /* the bracket */
+    float guess, value;    /* the last place asked, */
+    float other, at_other; /* and the end of the bracket that it took the place of */
+    float enough, grain;   /* what ends the search: a value, and steps so small that floats hardly follow */
     bool start_inside, settled;
 };
 
