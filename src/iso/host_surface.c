@@ -279,3 +279,31 @@ void hewn_host_surface_triangulate(const hewn_host_surface *surface, uint64_t tr
             triangulate_brick(surface, &table, slot);
     }
 }
+
+/* --- where the surface is, coarsely ---------------------------------------------------------------------------------
+ */
+
+/* From eight rows of eight cells to four rows of four blocks. */
+static uint64_t halve(uint64_t cells)
+{
+    cells |= cells >> 1;
+    cells = (cells | cells >> 8) & 0x0055005500550055u;
+    cells = (cells | cells >> 1) & 0x0033003300330033u;
+    cells = (cells | cells >> 2) & 0x000F000F000F000Fu;
+    return (cells | cells >> 12 | cells >> 24 | cells >> 36) & 0xFFFFu;
+}
+
+void hewn_host_surface_cut(const hewn_host_surface *surface, uint32_t *cuts)
+{
+#pragma omp parallel for schedule(dynamic, SHARE) if (surface->count >= ALONE)
+    for (uint32_t slot = 0; slot < surface->count; slot++) {
+        walk own = walk_begin(surface, slot);
+        uint64_t blocks = 0;
+        for (uint32_t z = 0; z < 8; z++) {
+            walk_to(&own, z);
+            blocks |= halve(surface_cells(&own)) << 16 * (z / 2);
+        }
+        cuts[2 * (uint64_t)slot] = (uint32_t)blocks;
+        cuts[2 * (uint64_t)slot + 1] = (uint32_t)(blocks >> 32);
+    }
+}

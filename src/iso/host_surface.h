@@ -30,4 +30,8 @@ void hewn_host_surface_spread(const hewn_host_surface *surface);
 /* Writes the triangles of a surface that was spread: `triangle_count` of them in all. */
 void hewn_host_surface_triangulate(const hewn_host_surface *surface, uint64_t triangle_count);
 
+/* Writes the blocks of 2 x 2 x 2 cells with surface, two words a brick as in hewn_cut_push: the work of cuts.comp. Of
+ * the views it reads those that are const. */
+void hewn_host_surface_cut(const hewn_host_surface *surface, uint32_t *cuts);
+
 #endif

@@ -29,13 +29,19 @@ static void free_subject(subject *made)
     hewn_field_destroy(&made->field);
 }
 
-static hewn_triangles extract(const subject *made, bool on_host, const hewn_extract_desc *desc)
+static hewn_triangles extract_with(const subject *made, bool on_host, const hewn_extract_desc *desc,
+                                   hewn_extract_stats *stats)
 {
     hewn_triangles mesh;
     made->extractor->on_host = on_host;
-    GPU_TEST_TRY(hewn_extract(made->extractor, desc, &mesh, NULL, &error));
+    GPU_TEST_TRY(hewn_extract(made->extractor, desc, &mesh, stats, &error));
     made->extractor->on_host = true;
     return mesh;
+}
+
+static hewn_triangles extract(const subject *made, bool on_host, const hewn_extract_desc *desc)
+{
+    return extract_with(made, on_host, desc, NULL);
 }
 
 static void assert_same(const hewn_triangles *a, const hewn_triangles *b)
@@ -50,8 +56,13 @@ static void assert_same(const hewn_triangles *a, const hewn_triangles *b)
 
 static void compare(const subject *made, const hewn_extract_desc *desc)
 {
-    hewn_triangles host = extract(made, true, desc), device = extract(made, false, desc);
+    hewn_extract_stats with_host, without;
+    hewn_triangles host = extract_with(made, true, desc, &with_host);
+    hewn_triangles device = extract_with(made, false, desc, &without);
     assert_same(&host, &device);
+    assert_int_equal(with_host.suspect_cells, without.suspect_cells);
+    assert_int_equal(with_host.undefined_cells, without.undefined_cells);
+    assert_memory_equal(&with_host.first_suspect, &without.first_suspect, sizeof without.first_suspect);
     hewn_triangles_destroy(&host);
     hewn_triangles_destroy(&device);
 }
