@@ -115,7 +115,7 @@ struct hewn_spread_push {
 struct hewn_vertex_push {
     HEWN_GRID grid;
     HEWN_UINT count;
-    HEWN_UINT dual; /* 1: crossings are not the mesh's vertices, and need not keep away from grid points */
+    HEWN_UINT dual;        /* 1: crossings are not the mesh's vertices, and need not keep away from grid points */
     HEWN_FLOATS positions; /* in: records; out: positions */
     HEWN_FLOATS normals;   /* out */
     HEWN_UINTS summary;    /* HEWN_SUMMARY_WORDS */
