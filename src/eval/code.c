@@ -244,7 +244,8 @@ void hewn_code_destroy(hewn_device *device, hewn_code **code)
 /* The texts tell best whether two fields make the same code: nothing else is compiled. */
 static hewn_result same_text(const hewn_listing *a, const hewn_listing *b, bool *same, hewn_error *error)
 {
-    const uint32_t all = HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_ROW;
+    const uint32_t all = HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_ROW |
+                         HEWN_FLAVOUR_NEAR; /* which tells most: what is sure depends on numbers */
     hewn_text texts[2] = {{0}, {0}};
     hewn_listing_write(a, all, &texts[0]);
     hewn_listing_write(b, all, &texts[1]);

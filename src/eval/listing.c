@@ -254,7 +254,11 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     if (!step->function)
         return;
     bool guard = flavour == INTERVAL && hewn_listing_needs_guard(listing, step);
-    hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", step->function);
+    bool known = flavour != INTERVAL && listing->near && step->sure;
+    const char *function = known && step->op == HEWN_OP_MIN   ? "lesser"
+                           : known && step->op == HEWN_OP_MAX ? "greater"
+                                                              : step->function;
+    hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", function);
     write_operands(listing, step, flavour, false, text);
     for (uint32_t i = 0; i < step->parameter_count; i++) {
         hewn_text_append(text, ",");
@@ -318,17 +322,19 @@ static void write_row(const hewn_listing *listing, hewn_text *text)
 
 void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text)
 {
+    hewn_listing view = *listing;
+    view.near = (flavours & HEWN_FLAVOUR_NEAR) != 0;
     if (flavours & HEWN_FLAVOUR_POINT)
-        write_function(listing, POINT, "float field_point(float x, float y, float z)\n{\n", text);
+        write_function(&view, POINT, "float field_point(float x, float y, float z)\n{\n", text);
     if (flavours & HEWN_FLAVOUR_INTERVAL)
-        write_function(listing, INTERVAL, "vec2 field_interval(vec2 x, vec2 y, vec2 z)\n{\n", text);
+        write_function(&view, INTERVAL, "vec2 field_interval(vec2 x, vec2 y, vec2 z)\n{\n", text);
     if (flavours & HEWN_FLAVOUR_GRADIENT)
-        write_function(listing, GRADIENT,
+        write_function(&view, GRADIENT,
                        "vec4 field_gradient(float at_x, float at_y, float at_z)\n{\n"
                        "vec4 x=vec4(1.0,0.0,0.0,at_x),y=vec4(0.0,1.0,0.0,at_y),z=vec4(0.0,0.0,1.0,at_z);\n",
                        text);
     if (flavours & (HEWN_FLAVOUR_ROW | HEWN_FLAVOUR_WORD))
-        write_row(listing, text);
+        write_row(&view, text);
     if (flavours & HEWN_FLAVOUR_WORD)
         hewn_text_append(text, "uint field_word_inside(uint i, vec4 y, float z)\n{\nuint bits = 0u;\n"
                                "for (uint k = 0u; k < 4u; k++)\n"

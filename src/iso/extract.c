@@ -306,6 +306,7 @@ hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *des
     *run.stats = (hewn_extract_stats){.method = run.method};
     *out = (hewn_triangles){0};
     HEWN_TRY(hewn_grid_lay(desc, &run.grid, &run.stats->bounds, error));
+    HEWN_TRY(hewn_extractor_reach(extractor, &run.grid, error));
     HEWN_TRY(prepare(extractor, desc, run.method, error));
     HEWN_TRY(stage(&run, "prepare", run.begin, hewn_clock_now(), 0.02, error));
     for (int axis = 0; axis < 3; axis++)
