@@ -20,6 +20,7 @@
 #include "hewn/triangles.h"
 #include "hewn/units.h"
 #include "hewn/volume.h"
+#include "hewn/volume_extract.h"
 #include "hewn/volume_io.h"
 
 #endif

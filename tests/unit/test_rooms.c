@@ -28,7 +28,7 @@ static const room rooms[] = {
     {"field", "base geom"},
     {"gpu", "base"},
     {"eval", "base geom field gpu"},
-    {"iso", "base geom field gpu eval"},
+    {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field gpu eval"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
@@ -49,6 +49,7 @@ static const header headers[] = {
     {"repair", "mesh"},   {"mesh_views", "mesh"},     {"extract", "iso"},       {"scene", "scene"},
     {"io", "io"},         {"job", "pipeline"},        {"file_job", "pipeline"}, {"hewn", "hewn"},
     {"smooth", "smooth"}, {"subdivide", "subdivide"}, {"volume", "volume"},     {"volume_io", "io"},
+    {"volume_extract", "iso"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
