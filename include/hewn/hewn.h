@@ -22,5 +22,6 @@
 #include "hewn/volume.h"
 #include "hewn/volume_extract.h"
 #include "hewn/volume_io.h"
+#include "hewn/volume_job.h"
 
 #endif

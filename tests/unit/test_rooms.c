@@ -50,6 +50,7 @@ static const header headers[] = {
     {"io", "io"},         {"job", "pipeline"},        {"file_job", "pipeline"}, {"hewn", "hewn"},
     {"smooth", "smooth"}, {"subdivide", "subdivide"}, {"volume", "volume"},     {"volume_io", "io"},
     {"volume_extract", "iso"},
+    {"volume_job", "pipeline"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
