@@ -10,8 +10,8 @@
 extern "C" {
 #endif
 
-/* What to mesh, how, and where to. Zero everywhere but `input` and `output` is a sensible default, but most volumes need
- * an iso value: without one level sets are meshed at 0 and others at Otsu's threshold. */
+/* What to mesh, how, and where to. Zero everywhere but `input` and `output` is a sensible default, but most volumes
+ * need an iso value: without one level sets are meshed at 0 and others at Otsu's threshold. */
 typedef struct hewn_volume_job_desc {
     const char *input; /* "-" is standard input */
     hewn_volume_read_desc read;
@@ -23,11 +23,11 @@ typedef struct hewn_volume_job_desc {
     hewn_inside inside;
     hewn_method method;
     bool open;
-    hewn_space space;          /* the default is glTF's for GLB, else RAS or the world */
-    const hewn_unit *unit;     /* what the input is in, whatever it says itself; NULL: as it says */
-    const hewn_unit *to_unit;  /* what the output shall be in; NULL: metres in glTF's space, else as it is */
-    uint32_t threads;          /* on the host; 0: what OpenMP chooses */
-    double began;              /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
+    hewn_space space;              /* the default is glTF's for GLB, else RAS or the world */
+    const hewn_unit *unit;         /* what the input is in, whatever it says itself; NULL: as it says */
+    const hewn_unit *to_unit;      /* what the output shall be in; NULL: metres in glTF's space, else as it is */
+    uint32_t threads;              /* on the host; 0: what OpenMP chooses */
+    double began;                  /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
     const hewn_progress *progress; /* or NULL; its stages have the names of the report's */
 } hewn_volume_job_desc;
 
@@ -50,11 +50,11 @@ typedef struct hewn_volume_report {
     double iso_value; /* that was used */
     hewn_method method;
     bool open;
-    hewn_space space;              /* of the mesh */
-    const hewn_unit *unit_before;  /* of the volume's world; NULL: nobody knows */
-    const hewn_unit *unit;         /* of the mesh; NULL: nobody knows, or voxels */
-    bool unit_assumed;             /* unit_before is neither the file's nor the caller's word */
-    double place[16];              /* from (i, j, k, 1) to the mesh */
+    hewn_space space;             /* of the mesh */
+    const hewn_unit *unit_before; /* of the volume's world; NULL: nobody knows */
+    const hewn_unit *unit;        /* of the mesh; NULL: nobody knows, or voxels */
+    bool unit_assumed;            /* unit_before is neither the file's nor the caller's word */
+    double place[16];             /* from (i, j, k, 1) to the mesh */
     hewn_volume_extract_stats extraction;
     /* Where the mesh is mostly its cap, or a report is written: what values there are. Bins are HEWN_VOLUME_REPORT_BINS
      * equal parts of the range. */

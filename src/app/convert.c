@@ -47,8 +47,8 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
     hewn_volume_format format;
     const char *from = hewn_arguments_value(arguments, "from");
-    bool is_mesh = !from && arguments->operand_count > 0 &&
-                   hewn_mesh_format_of(arguments->operands[0]) != HEWN_MESH_UNKNOWN;
+    bool is_mesh =
+        !from && arguments->operand_count > 0 && hewn_mesh_format_of(arguments->operands[0]) != HEWN_MESH_UNKNOWN;
     if (!is_mesh && arguments->operand_count == 1 && hewn_volume_arguments_wanted(arguments, &format))
         return hewn_volume_convert_run(command, arguments, format);
     return hewn_file_command_run(command, arguments, &(hewn_file_command){read, print});

@@ -53,6 +53,14 @@ static hewn_result read_place(const hewn_arguments *arguments, hewn_volume_job_d
     return read_unit(arguments, "to-unit", &desc->to_unit, error);
 }
 
+static hewn_result refuse_smoothing(const hewn_arguments *arguments, hewn_error *error)
+{
+    if (!hewn_arguments_has(arguments, "smooth"))
+        return HEWN_OK;
+    return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                     "--smooth is for meshes: convert the volume first, then `hewn smooth` its mesh");
+}
+
 static hewn_result read_surface(const hewn_arguments *arguments, hewn_volume_job_desc *desc, hewn_error *error)
 {
     const char *method = hewn_arguments_value(arguments, "method"), *inside = hewn_arguments_value(arguments, "inside");
@@ -102,6 +110,7 @@ static hewn_result read_request(const hewn_arguments *arguments, hewn_volume_for
     desc->iso = out->volume.has_iso ? &out->volume.iso : NULL;
     HEWN_TRY(read_place(arguments, desc, error));
     HEWN_TRY(read_surface(arguments, desc, error));
+    HEWN_TRY(refuse_smoothing(arguments, error));
     HEWN_TRY(read_output(arguments, desc, error));
     out->quiet = hewn_arguments_has(arguments, "quiet");
     return HEWN_OK;
@@ -124,7 +133,8 @@ static void print_mesh(const hewn_volume_report *report)
     const hewn_certificate *certificate = &report->certificate;
     const char *unit = report->unit ? report->unit->name : "";
     const char *space = report->unit ? " " : "";
-    fprintf(stderr, "%s -> %s: %" PRIu64 " vertices, %" PRIu64 " faces; %s, manifold, oriented; %" PRIu64 " component%s",
+    fprintf(stderr,
+            "%s -> %s: %" PRIu64 " vertices, %" PRIu64 " faces; %s, manifold, oriented; %" PRIu64 " component%s",
             shown(report->input, "standard input"), shown(report->output, "standard output"), report->vertices,
             report->faces, certificate->closed ? "closed" : "open", certificate->components,
             plural(certificate->components));
@@ -151,7 +161,8 @@ static void print_place(const hewn_volume_report *report)
         fprintf(stderr, "unit %s", report->unit->name);
     else
         fprintf(stderr, "unit %s -> %s", report->unit_before->name, report->unit->name);
-    fprintf(stderr, "%s%s\n", report->unit_assumed && report->unit ? " (assumed: the volume does not say its unit)" : "",
+    fprintf(stderr, "%s%s\n",
+            report->unit_assumed && report->unit ? " (assumed: the volume does not say its unit)" : "",
             report->left_handed ? "; left-handed voxels, faces turned" : "");
 }
 
@@ -170,8 +181,9 @@ static void print_notes(const hewn_volume_report *report)
               "it open\n",
               stderr);
     if (report->range.nan_count > 0)
-        fprintf(stderr, "hewn: note: %" PRIu64 " value%s not a number and count%s as outside\n", report->range.nan_count,
-                report->range.nan_count == 1 ? " is" : "s are", report->range.nan_count == 1 ? "s" : "");
+        fprintf(stderr, "hewn: note: %" PRIu64 " value%s not a number and count%s as outside\n",
+                report->range.nan_count, report->range.nan_count == 1 ? " is" : "s are",
+                report->range.nan_count == 1 ? "s" : "");
 }
 
 /* --- running ------------------------------------------------------------------------------------------------------ */

@@ -5,7 +5,8 @@
 #include "base/text.h"
 #include "hewn/model.h"
 
-/* Appends "1 unit = 0.001 m, +Z up", with question marks for what is not known (NULL), and of a patient's space (or NULL)
+/* Appends "1 unit = 0.001 m, +Z up", with question marks for what is not known (NULL), and of a patient's space (or
+ * NULL)
  * ", SPACE=RAS", as 3D Slicer reads it. */
 void hewn_remark_print(hewn_text *text, const hewn_unit *unit, const hewn_axis *up, const char *space);
 

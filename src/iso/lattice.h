@@ -23,23 +23,23 @@ typedef struct hewn_lattice_row {
 
 typedef struct hewn_lattice {
     const hewn_volume *volume;
-    uint64_t first;     /* sample (0, 0, 0) of the frame */
-    uint32_t rim;       /* 1 where it is closed, else 0 */
-    uint32_t dims[3];   /* with the rim */
+    uint64_t first;   /* sample (0, 0, 0) of the frame */
+    uint32_t rim;     /* 1 where it is closed, else 0 */
+    uint32_t dims[3]; /* with the rim */
     hewn_threshold threshold;
     /* The trilinear field that is meshed: rise × (sample - level), below 0 outside where `above`, inside otherwise. 0
      * counts as just not below. */
     double level, rise;
     bool above;
     double margin;
-    double place[12];   /* to the mesh's space, row by row */
-    double turn[9];     /* takes the gradient of samples to an outward direction there */
+    double place[12]; /* to the mesh's space, row by row */
+    double turn[9];   /* takes the gradient of samples to an outward direction there */
     bool mirrors;
-    uint32_t words;     /* a row has so many words of 64 bits, and one of 0 follows the last row */
-    uint64_t *inside;   /* bit i % 64 of word i / 64 */
-    hewn_lattice_row *rows;      /* dims[1] × dims[2] */
-    const uint32_t *table;       /* of patches, as in iso/mc33.h */
-    bool flipped;                /* the table's inside is what is not inside here */
+    uint32_t words;         /* a row has so many words of 64 bits, and one of 0 follows the last row */
+    uint64_t *inside;       /* bit i % 64 of word i / 64 */
+    hewn_lattice_row *rows; /* dims[1] × dims[2] */
+    const uint32_t *table;  /* of patches, as in iso/mc33.h */
+    bool flipped;           /* the table's inside is what is not inside here */
     bool normals;
     uint64_t vertex_count, centre_count, triangle_count;
     uint64_t active_cells, decided_cells, cap_vertices;
@@ -113,7 +113,8 @@ static inline uint32_t hewn_lattice_pattern(const hewn_lattice_cells *cells, uin
 {
     uint32_t pattern = 0;
     for (int i = 0; i < 4; i++)
-        pattern |= (uint32_t)(cells->here[i] >> bit & 1) << 2 * i | (uint32_t)(cells->next[i] >> bit & 1) << (2 * i + 1);
+        pattern |= (uint32_t)(cells->here[i] >> bit & 1) << 2 * i | (uint32_t)(cells->next[i] >> bit & 1)
+                                                                        << (2 * i + 1);
     return pattern;
 }
 

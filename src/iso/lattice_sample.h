@@ -1,5 +1,5 @@
-/* Samples of a lattice by their number in the volume. `type` is the volume's; where it is a constant, what remains after
- * inlining is the code for that type alone. */
+/* Samples of a lattice by their number in the volume. `type` is the volume's; where it is a constant, what remains
+ * after inlining is the code for that type alone. */
 #ifndef HEWN_SRC_ISO_LATTICE_SAMPLE_H
 #define HEWN_SRC_ISO_LATTICE_SAMPLE_H
 

@@ -1,6 +1,6 @@
-/* Which samples are inside, a bit each. All samples are read once, in order, and compared as they are: this is as fast as
- * memory gives them, which finding the least and greatest of bricks first would not be. What follows looks at 64 cells
- * at once, and at those only that hold surface. */
+/* Which samples are inside, a bit each. All samples are read once, in order, and compared as they are: this is as fast
+ * as memory gives them, which finding the least and greatest of bricks first would not be. What follows looks at 64
+ * cells at once, and at those only that hold surface. */
 #include <string.h>
 
 #include "base/alloc.h"

@@ -9,8 +9,8 @@
 typedef struct cell_row {
     const hewn_lattice *lattice;
     hewn_triangles *out;
-    uint32_t along[4];  /* edges along i, of rows (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1) */
-    uint32_t beside[2]; /* along j, of rows (j, k), (j, k + 1) */
+    uint32_t along[4];   /* edges along i, of rows (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1) */
+    uint32_t beside[2];  /* along j, of rows (j, k), (j, k + 1) */
     uint32_t upright[2]; /* along k, of rows (j, k), (j + 1, k) */
     uint32_t centre;
     uint64_t triangle;

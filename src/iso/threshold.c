@@ -157,11 +157,15 @@ void hewn_threshold_apply(const hewn_threshold *threshold, const hewn_volume *vo
     switch (volume->type) {
     case HEWN_VOXEL_INT8: compare_int8_t((const int8_t *)from, count, (int8_t)key, least, out); return;
     case HEWN_VOXEL_UINT8: compare_uint8_t((const uint8_t *)from, count, (uint8_t)key, least, out); return;
-    case HEWN_VOXEL_INT16: compare_int16_t((const int16_t *)(const void *)from, count, (int16_t)key, least, out); return;
+    case HEWN_VOXEL_INT16:
+        compare_int16_t((const int16_t *)(const void *)from, count, (int16_t)key, least, out);
+        return;
     case HEWN_VOXEL_UINT16:
         compare_uint16_t((const uint16_t *)(const void *)from, count, (uint16_t)key, least, out);
         return;
-    case HEWN_VOXEL_INT32: compare_int32_t((const int32_t *)(const void *)from, count, (int32_t)key, least, out); return;
+    case HEWN_VOXEL_INT32:
+        compare_int32_t((const int32_t *)(const void *)from, count, (int32_t)key, least, out);
+        return;
     case HEWN_VOXEL_UINT32:
         compare_uint32_t((const uint32_t *)(const void *)from, count, (uint32_t)key, least, out);
         return;
@@ -171,6 +175,8 @@ void hewn_threshold_apply(const hewn_threshold *threshold, const hewn_volume *vo
         return;
     case HEWN_VOXEL_HALF: compare_half((const uint16_t *)(const void *)from, count, (int16_t)key, least, out); return;
     case HEWN_VOXEL_FLOAT: compare_float((const float *)(const void *)from, count, float_of(key), least, out); return;
-    case HEWN_VOXEL_DOUBLE: compare_double((const double *)(const void *)from, count, double_of(key), least, out); return;
+    case HEWN_VOXEL_DOUBLE:
+        compare_double((const double *)(const void *)from, count, double_of(key), least, out);
+        return;
     }
 }

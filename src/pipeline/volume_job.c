@@ -120,9 +120,9 @@ static hewn_result choose_place(volume_job *job, hewn_error *error)
     const hewn_unit *unit = desc->unit ? desc->unit : job->volume.unit;
     report->space = desc->space;
     if (desc->space == HEWN_SPACE_DEFAULT)
-        report->space = report->to == HEWN_MESH_GLB  ? HEWN_SPACE_GLTF
-                        : job->volume.anatomical     ? HEWN_SPACE_RAS
-                                                     : HEWN_SPACE_WORLD;
+        report->space = report->to == HEWN_MESH_GLB ? HEWN_SPACE_GLTF
+                        : job->volume.anatomical    ? HEWN_SPACE_RAS
+                                                    : HEWN_SPACE_WORLD;
     if (report->space == HEWN_SPACE_VOXEL)
         return hewn_volume_bring(&job->volume, report->space, 1, report->place, error);
     report->unit_assumed = !unit && (job->volume.anatomical || desc->to_unit || report->space == HEWN_SPACE_GLTF);
@@ -149,9 +149,9 @@ static hewn_result choose_iso(volume_job *job, hewn_error *error)
     const hewn_volume_job_desc *desc = job->desc;
     hewn_volume_report *report = job->report;
     report->iso_chosen = !desc->iso;
-    report->iso = desc->iso                 ? *desc->iso
-                  : job->volume.level_set   ? (hewn_iso){.kind = HEWN_ISO_NUMBER}
-                                            : (hewn_iso){.kind = HEWN_ISO_OTSU, .threshold = 1, .classes = 2};
+    report->iso = desc->iso               ? *desc->iso
+                  : job->volume.level_set ? (hewn_iso){.kind = HEWN_ISO_NUMBER}
+                                          : (hewn_iso){.kind = HEWN_ISO_OTSU, .threshold = 1, .classes = 2};
     report->iso_value = report->iso.number;
     if (report->iso.kind == HEWN_ISO_NUMBER)
         return HEWN_OK;
@@ -196,10 +196,11 @@ static hewn_result explain_nothing(volume_job *job, hewn_error *error)
                          range->lo, report->iso_value);
     for (int i = 0; i < 3; i++)
         HEWN_TRY(hewn_volume_find_percentile(&job->volume, report->frame, 25.0 * (i + 1), &quarter[i], error));
-    return hewn_fail(error, HEWN_BAD_INPUT,
-                     "there is no surface at the iso value %.9g: the values are from %.9g to %.9g, a quarter of them up "
-                     "to %.9g, half up to %.9g, three quarters up to %.9g; --iso otsu finds a value between",
-                     report->iso_value, range->lo, range->hi, quarter[0], quarter[1], quarter[2]);
+    return hewn_fail(
+        error, HEWN_BAD_INPUT,
+        "there is no surface at the iso value %.9g: the values are from %.9g to %.9g, a quarter of them up "
+        "to %.9g, half up to %.9g, three quarters up to %.9g; --iso otsu finds a value between",
+        report->iso_value, range->lo, range->hi, quarter[0], quarter[1], quarter[2]);
 }
 
 /* --- the mesh ----------------------------------------------------------------------------------------------------- */
@@ -240,8 +241,9 @@ static hewn_result certify(volume_job *job, hewn_error *error)
     end_stage(job, "certify");
     if (certificate->manifold && certificate->oriented && (certificate->closed || job->desc->open))
         return HEWN_OK;
-    return hewn_fail(error, HEWN_INTERNAL, "the mesh is not what it must be (%llu open edges); nothing was written, and "
-                                           "this is a fault of Hewn, please report it",
+    return hewn_fail(error, HEWN_INTERNAL,
+                     "the mesh is not what it must be (%llu open edges); nothing was written, and "
+                     "this is a fault of Hewn, please report it",
                      (unsigned long long)certificate->boundary_edges);
 }
 
@@ -263,7 +265,7 @@ static hewn_result write(volume_job *job, hewn_error *error)
                                   .space = patient ? tags[report->space] : NULL,
                                   .progress = desc->progress};
     if (report->space == HEWN_SPACE_GLTF && report->anatomical)
-        write_desc.space = "left, head, front";
+        write_desc.space = "x left, y head, z front";
     HEWN_TRY(hewn_triangles_write(&job->mesh, desc->output, &write_desc, error));
     end_stage(job, "write");
     return HEWN_OK;

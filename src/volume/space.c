@@ -8,11 +8,12 @@
 static const struct {
     const char *name;
     double axes[9]; /* from RAS */
-} spaces[] = {[HEWN_SPACE_RAS] = {"ras", {1, 0, 0, 0, 1, 0, 0, 0, 1}},
-              [HEWN_SPACE_LPS] = {"lps", {-1, 0, 0, 0, -1, 0, 0, 0, 1}},
-              [HEWN_SPACE_VOXEL] = {"voxel", {0}},
-              [HEWN_SPACE_GLTF] = {"gltf", {-1, 0, 0, 0, 0, 1, 0, 1, 0}}, /* up is +Y, and who faces the viewer faces +Z */
-              [HEWN_SPACE_WORLD] = {"world", {1, 0, 0, 0, 1, 0, 0, 0, 1}}};
+} spaces[] = {
+    [HEWN_SPACE_RAS] = {"ras", {1, 0, 0, 0, 1, 0, 0, 0, 1}},
+    [HEWN_SPACE_LPS] = {"lps", {-1, 0, 0, 0, -1, 0, 0, 0, 1}},
+    [HEWN_SPACE_VOXEL] = {"voxel", {0}},
+    [HEWN_SPACE_GLTF] = {"gltf", {-1, 0, 0, 0, 0, 1, 0, 1, 0}}, /* up is +Y, and who faces the viewer faces +Z */
+    [HEWN_SPACE_WORLD] = {"world", {1, 0, 0, 0, 1, 0, 0, 0, 1}}};
 #define SPACE_COUNT (sizeof spaces / sizeof *spaces)
 
 const char *hewn_space_name(hewn_space space)

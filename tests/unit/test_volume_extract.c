@@ -277,8 +277,8 @@ static void test_decisions_are_exact(void **state)
 
 /* --- thresholds --------------------------------------------------------------------------------------------------- */
 
-static const double scales[][2] = {{1, 0},     {-1, 0},      {0.1, -3},    {-0.37, 1024}, {1e-7, 5},
-                                   {1e30, -1}, {1, 1e-9},    {3, 0.1},     {1, -1024},    {-1e5, 1e12}};
+static const double scales[][2] = {{1, 0},     {-1, 0},   {0.1, -3}, {-0.37, 1024}, {1e-7, 5},
+                                   {1e30, -1}, {1, 1e-9}, {3, 0.1},  {1, -1024},    {-1e5, 1e12}};
 
 /* Whatever slope and intercept are: a sample is inside where the value that is told of it says so. */
 static void test_thresholds_agree_with_values(void **state)
@@ -362,7 +362,7 @@ static hewn_volume plain_volume(uint32_t x, uint32_t y, uint32_t z, hewn_voxel t
 static void test_all_inside_is_a_box(void **state)
 {
     (void)state;
-    static const uint32_t sizes[][3] = {{1, 1, 1},  {1, 5, 1},  {4, 1, 3},   {61, 2, 2},
+    static const uint32_t sizes[][3] = {{1, 1, 1},  {1, 5, 1},  {4, 1, 3},  {61, 2, 2},
                                         {62, 3, 1}, {63, 2, 3}, {64, 2, 2}, {5000, 2, 1}};
     static uint8_t samples[20000];
     memset(samples, 7, sizeof samples);
@@ -408,8 +408,8 @@ static void test_requests_that_make_no_sense(void **state)
                                             {.iso = 0.5, .place = (const double[16]){NAN, 0, 0, 0, 0, 1}}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_int_equal(hewn_volume_extract(&volume, &bad[i], &mesh, NULL, &error), HEWN_INVALID_ARGUMENT);
-    const hewn_volume_extract_desc far = {.iso = 0.5,
-                                          .place = (const double[16]){1, 0, 0, 1e8, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+    const hewn_volume_extract_desc far = {
+        .iso = 0.5, .place = (const double[16]){1, 0, 0, 1e8, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
     assert_int_equal(hewn_volume_extract(&volume, &far, &mesh, NULL, &error), HEWN_BAD_INPUT);
 }
 
@@ -423,11 +423,13 @@ static void check_ball(bool mirrored, double slope)
     static float samples[X * Y * Z];
     const double radius = 6, centre[3] = {103, -52, 31};
     hewn_volume volume = plain_volume(X, Y, Z, HEWN_VOXEL_FLOAT, samples);
-    const double place[16] = {0.54,  -0.28, 0.42, 0, 0.31, 0.62, -0.11 * (mirrored ? -1 : 1), 0, -0.2, 0.15,
-                              mirrored ? -0.9 : 0.9, 0, 0, 0, 0, 1};
+    const double place[16] = {
+        0.54, -0.28, 0.42, 0, 0.31, 0.62, -0.11 * (mirrored ? -1 : 1), 0, -0.2, 0.15, mirrored ? -0.9 : 0.9,
+        0,    0,     0,    0, 1};
     memcpy(volume.to_world, place, sizeof place);
     for (int a = 0; a < 3; a++)
-        volume.to_world[4 * a + 3] = centre[a] - place[4 * a] * 19.3 - place[4 * a + 1] * 17.7 - place[4 * a + 2] * 14.6;
+        volume.to_world[4 * a + 3] =
+            centre[a] - place[4 * a] * 19.3 - place[4 * a + 1] * 17.7 - place[4 * a + 2] * 14.6;
     volume.slope = slope;
     volume.intercept = 10;
     for (int i = 0; i < X * Y * Z; i++) {
@@ -500,14 +502,10 @@ static void test_same_bytes_for_any_threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_thresholds_agree_with_values),
-        cmocka_unit_test(test_decisions_are_exact),
-        cmocka_unit_test(test_same_triangles_as_the_twin),
-        cmocka_unit_test(test_topology_of_the_interpolant),
-        cmocka_unit_test(test_values_that_are_not_finite),
-        cmocka_unit_test(test_all_inside_is_a_box),
-        cmocka_unit_test(test_requests_that_make_no_sense),
-        cmocka_unit_test(test_ball_in_an_oblique_lattice),
+        cmocka_unit_test(test_thresholds_agree_with_values), cmocka_unit_test(test_decisions_are_exact),
+        cmocka_unit_test(test_same_triangles_as_the_twin),   cmocka_unit_test(test_topology_of_the_interpolant),
+        cmocka_unit_test(test_values_that_are_not_finite),   cmocka_unit_test(test_all_inside_is_a_box),
+        cmocka_unit_test(test_requests_that_make_no_sense),  cmocka_unit_test(test_ball_in_an_oblique_lattice),
         cmocka_unit_test(test_same_bytes_for_any_threads),
     };
     return cmocka_run_group_tests_name("volume_extract", tests, derive_table, drop_table);
