@@ -37,37 +37,36 @@ enum { HEWN_VOLUME_REPORT_BINS = 32 };
  * hewn_volume_report_destroy(). docs/volumes.md describes the JSON that it prints as. */
 typedef struct hewn_volume_report {
     char *input, *output;
+    char *remark; /* what the reader had to say; NULL: nothing */
     hewn_volume_format from;
     hewn_mesh_format to;
-    char *remark; /* what the reader had to say; NULL: nothing */
+    hewn_method method;
+    hewn_space space; /* of the mesh */
     uint32_t dims[3];
     hewn_voxel type;
     double slope, intercept;
     uint64_t frame_count, frame;
-    bool anatomical, left_handed;
-    hewn_iso iso;     /* as it was asked for, or chosen */
-    bool iso_chosen;  /* by the job, not the caller */
-    double iso_value; /* that was used */
-    hewn_method method;
-    bool open;
-    hewn_space space;             /* of the mesh */
+    double iso_value;             /* that was used */
+    hewn_iso iso;                 /* as it was asked for, or chosen */
     const hewn_unit *unit_before; /* of the volume's world; NULL: nobody knows */
     const hewn_unit *unit;        /* of the mesh; NULL: nobody knows, or voxels */
-    bool unit_assumed;            /* unit_before is neither the file's nor the caller's word */
     double place[16];             /* from (i, j, k, 1) to the mesh */
-    hewn_volume_extract_stats extraction;
+    bool iso_chosen;              /* by the job, not the caller */
+    bool unit_assumed;            /* unit_before is neither the file's nor the caller's word */
+    bool anatomical, left_handed, open;
+    bool box_shaped; /* most of the mesh is the cap: the iso value parts hardly anything off */
     /* Where the mesh is mostly its cap, or a report is written: what values there are. Bins are HEWN_VOLUME_REPORT_BINS
      * equal parts of the range. */
     bool measured;
     hewn_volume_range range;
     uint64_t bins[HEWN_VOLUME_REPORT_BINS];
-    bool box_shaped; /* most of the mesh is the cap: the iso value parts hardly anything off */
+    hewn_volume_extract_stats extraction;
     hewn_certificate certificate;
     uint64_t vertices, faces;
     uint64_t peak_host_bytes;
+    double seconds;
     hewn_report_stage stages[8]; /* load, iso, measure, extract, certify, write */
     uint32_t stage_count;
-    double seconds;
 } hewn_volume_report;
 
 /* Runs a job: the mesh appears only when it is complete and was proven manifold, oriented and (but for `open`) closed.

@@ -118,7 +118,7 @@ static join_signs find_exactly(const double values[8], double scale)
 {
     upright up;
     join_signs out = {0};
-    double test[TEST], twice[LINE], four[LINE];
+    double test[TEST] = {0}, twice[LINE], four[LINE];
     expand(&up, values, scale);
     for (int i = 0; i < up.count[2]; i++) {
         twice[i] = 2 * up.q[2][i];

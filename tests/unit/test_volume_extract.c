@@ -170,7 +170,7 @@ static void check_open(const random_volume *of, hewn_inside inside)
 static void test_same_triangles_as_the_twin(void **state)
 {
     (void)state;
-    uint64_t grids = getenv("HEWN_LONG") ? 500 : 6;
+    uint64_t grids = getenv("HEWN_LONG") ? 40 : 4;
     static random_volume volume;
     for (int type = 0; type < HEWN_VOXEL_COUNT; type++)
         for (int kind = 0; kind < RANDOM_KINDS; kind++)
@@ -215,7 +215,7 @@ static void test_topology_of_the_interpolant(void **state)
 {
     (void)state;
     static const hewn_voxel types[] = {HEWN_VOXEL_UINT8, HEWN_VOXEL_INT8, HEWN_VOXEL_FLOAT, HEWN_VOXEL_DOUBLE};
-    uint64_t grids = getenv("HEWN_LONG") ? 1000 : 10;
+    uint64_t grids = getenv("HEWN_LONG") ? 150 : 8;
     static random_volume volume;
     for (size_t type = 0; type < sizeof types / sizeof *types; type++)
         for (int kind = 0; kind < RANDOM_KINDS; kind++)
@@ -259,7 +259,7 @@ static void test_decisions_are_exact(void **state)
 {
     (void)state;
     uint64_t random = 77;
-    uint32_t joins = 0, trials = getenv("HEWN_LONG") ? 2000000 : 60000;
+    uint32_t joins = 0, trials = getenv("HEWN_LONG") ? 300000 : 15000;
     for (uint32_t trial = 0; trial < trials; trial++) {
         double values[8];
         uint32_t pattern = 0;
