@@ -22,6 +22,8 @@
 #include "hewn/triangles.h"
 #include "hewn/units.h"
 #include "hewn/volume.h"
+#include "hewn/volume_extract.h"
 #include "hewn/volume_io.h"
+#include "hewn/volume_job.h"
 
 #endif

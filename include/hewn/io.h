@@ -56,6 +56,11 @@ typedef struct hewn_write_desc {
      * where the model knows none and no unit is given (GLB and 3MF then take them to be their own). */
     const hewn_unit *unit;
     hewn_axis up;
+    bool unsure; /* of triangle buffers: nobody knows their axes nor, where `unit` is NULL, their unit */
+    /* Which space of a patient positions are in: "RAS" or "LPS" (towards which sides the axes point). STL, OBJ, PLY and
+     * OFF say SPACE=RAS in their header or first comments, which 3D Slicer reads; GLB in its asset's extras, 3MF in its
+     * description. NULL: nothing is said. Static or the caller's. */
+    const char *space;
     bool quads;                    /* of triangles that are paired: write the quads, where the format has polygons */
     const hewn_progress *progress; /* or NULL; the stage is "write" */
 } hewn_write_desc;

@@ -29,7 +29,7 @@ static const room rooms[] = {
     {"field", "base geom"},
     {"gpu", "base"},
     {"eval", "base geom field gpu"},
-    {"iso", "base geom field gpu eval"},
+    {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field gpu eval"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
@@ -45,14 +45,14 @@ typedef struct header {
 } header;
 
 static const header headers[] = {
-    {"base", "open"},       {"field", "open"},    {"triangles", "open"},
-    {"device", "gpu"},      {"check", "mesh"},    {"units", "open"},
-    {"model", "mesh"},      {"mesh", "mesh"},     {"repair", "mesh"},
-    {"mesh_views", "mesh"}, {"extract", "iso"},   {"scene", "scene"},
-    {"io", "io"},           {"job", "pipeline"},  {"file_job", "pipeline"},
-    {"hewn", "hewn"},       {"smooth", "smooth"}, {"subdivide", "subdivide"},
-    {"volume", "volume"},   {"volume_io", "io"},  {"simplify", "simplify"},
-    {"distance", "mesh"},
+    {"base", "open"},       {"field", "open"},         {"triangles", "open"},
+    {"device", "gpu"},      {"check", "mesh"},         {"units", "open"},
+    {"model", "mesh"},      {"mesh", "mesh"},          {"repair", "mesh"},
+    {"mesh_views", "mesh"}, {"extract", "iso"},        {"scene", "scene"},
+    {"io", "io"},           {"job", "pipeline"},       {"file_job", "pipeline"},
+    {"hewn", "hewn"},       {"smooth", "smooth"},      {"subdivide", "subdivide"},
+    {"volume", "volume"},   {"volume_io", "io"},       {"simplify", "simplify"},
+    {"distance", "mesh"},   {"volume_extract", "iso"}, {"volume_job", "pipeline"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
