@@ -24,6 +24,7 @@ static const room rooms[] = {
     {"volume", "base geom"},
     {"mesh", "base geom"},
     {"smooth", "base geom mesh"},
+    {"labels", "base geom volume mesh smooth"},
     {"subdivide", "base geom mesh"},
     {"field", "base geom"},
     {"gpu", "base"},
@@ -32,7 +33,7 @@ static const room rooms[] = {
     {"render", "base geom field gpu eval"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth subdivide field gpu eval iso render scene io"},
+    {"pipeline", "base geom volume mesh smooth labels subdivide field gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -49,6 +50,7 @@ static const header headers[] = {
     {"repair", "mesh"},   {"mesh_views", "mesh"},     {"extract", "iso"},       {"scene", "scene"},
     {"io", "io"},         {"job", "pipeline"},        {"file_job", "pipeline"}, {"hewn", "hewn"},
     {"smooth", "smooth"}, {"subdivide", "subdivide"}, {"volume", "volume"},     {"volume_io", "io"},
+    {"labels", "labels"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
