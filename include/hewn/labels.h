@@ -65,7 +65,7 @@ HEWN_API hewn_result hewn_label_mesh_smooth(hewn_label_mesh *mesh, const hewn_sm
                                             hewn_smooth_report *report, hewn_error *error);
 
 /* The shell of label `number` (1 to label_count) as a model of its own: its triangles and vertices in the mesh's order,
- * no unit, +Z up. HEWN_INVALID_ARGUMENT, HEWN_OUT_OF_MEMORY. */
+ * of unknown unit and axes. HEWN_INVALID_ARGUMENT, HEWN_OUT_OF_MEMORY. */
 HEWN_API hewn_result hewn_label_mesh_shell(const hewn_label_mesh *mesh, uint32_t number, hewn_model *out,
                                            hewn_error *error);
 

@@ -155,7 +155,7 @@ static hewn_result make_shells(const hewn_label_mesh *mesh, uint32_t from, uint3
                                hewn_error *error)
 {
     uint64_t faces = mesh->first[to] - mesh->first[from];
-    *out = (hewn_model){.up = HEWN_AXIS_PLUS_Z, .up_known = true};
+    *out = (hewn_model){.up = HEWN_AXIS_PLUS_Z};
     if (3 * faces >= UINT32_MAX)
         return hewn_fail(error, HEWN_LIMIT, "the shells of all labels have more corners than indices can name");
     uint32_t *place = hewn_alloc_zero(mesh->vertex_count, sizeof *place); /* costs only what is touched */
@@ -229,10 +229,7 @@ static hewn_result fill_side(const hewn_label_mesh *mesh, int side, int32_t outs
 
 hewn_result hewn_label_mesh_model(const hewn_label_mesh *mesh, int32_t outside, hewn_model *out, hewn_error *error)
 {
-    *out = (hewn_model){.vertex_count = mesh->vertex_count,
-                        .face_count = mesh->triangle_count,
-                        .up = HEWN_AXIS_PLUS_Z,
-                        .up_known = true};
+    *out = (hewn_model){.vertex_count = mesh->vertex_count, .face_count = mesh->triangle_count, .up = HEWN_AXIS_PLUS_Z};
     for (uint32_t n = 0; n < mesh->label_count; n++)
         if (mesh->labels[n] < INT32_MIN || mesh->labels[n] > INT32_MAX)
             return hewn_fail(error, HEWN_LIMIT, "label %lld is too large for a number of 32 bits",
