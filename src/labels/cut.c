@@ -118,13 +118,16 @@ static void place_centre(const cutter *by, uint64_t polygon, double out[3])
     out[axis] += fmin(fmax(along, 1.0 / 16), 15.0 / 16);
 }
 
+/* The label of the higher number comes behind, so that what lies alone in the outside is oriented in itself. */
 static void put(hewn_label_mesh *mesh, uint64_t *at, const uint16_t *sides, uint32_t a, uint32_t b, uint32_t c)
 {
     uint64_t t = (*at)++;
+    bool turned = sides[0] < sides[1];
     mesh->indices[3 * t] = a;
-    mesh->indices[3 * t + 1] = b;
-    mesh->indices[3 * t + 2] = c;
-    memcpy(mesh->sides + 2 * t, sides, 2 * sizeof *sides);
+    mesh->indices[3 * t + 1] = turned ? c : b;
+    mesh->indices[3 * t + 2] = turned ? b : c;
+    mesh->sides[2 * t] = turned ? sides[1] : sides[0];
+    mesh->sides[2 * t + 1] = turned ? sides[0] : sides[1];
 }
 
 static void emit_block(const cutter *by, uint64_t block)

@@ -8,7 +8,7 @@
 #include "base/progress.h"
 
 /* In cells. Vertices keep so far off the faces of their cell that no two of different cells come together; those that
- * share a cell stay near their places, which are at least three times as far apart (tests/unit/test_label_cells.c). */
+ * share a cell stay near their places, which are at least 1 / 12 apart (tests/unit/test_labels.c). */
 static const double margin = 1.0 / 32, nearness = 1.0 / 32;
 
 /* Neighbours of vertex v: neighbours[first[v]] to neighbours[first[v + 1] - 1]. */
