@@ -61,7 +61,7 @@ const hewn_command hewn_command_convert = {
              "  hewn convert chair.obj --unit in --up +Z -o chair.glb\n"
              "  hewn convert part.stl --unit mm -o part.3mf\n"
              "  hewn convert scan.ply.gz -o - --to off | head -2\n"
-             "  hewn convert brain.nii.gz --labels all --names FreeSurferColorLUT.txt -o brain.glb\n"
+             "  hewn convert brain.nii.gz --labels all --names FreeSurferLUT.txt -o brain.glb\n"
              "  hewn convert seg.nrrd --labels 1,3 -o 'parts/{label}-{name}.stl'\n",
     .run = run,
 };

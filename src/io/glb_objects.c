@@ -262,17 +262,31 @@ static float *make_normals(const hewn_model *model)
     return made ? normals : NULL;
 }
 
-/* Writes `count` numbers of 4 bytes: doubles rounded to floats, floats, or indices. */
-static hewn_result write_numbers(const file *of, const double *doubles, const float *floats, const uint32_t *indices,
-                                 uint64_t count, hewn_error *error)
+/* Puts number `at` of an array at `to`, as 4 bytes; what follows them. */
+typedef char *(*put_number)(const void *numbers, uint64_t at, char *to);
+
+static char *put_rounded(const void *numbers, uint64_t at, char *to)
+{
+    return hewn_put_float(to, (float)((const double *)numbers)[at]);
+}
+
+static char *put_float(const void *numbers, uint64_t at, char *to)
+{
+    return hewn_put_float(to, ((const float *)numbers)[at]);
+}
+
+static char *put_index(const void *numbers, uint64_t at, char *to)
+{
+    return hewn_put_u32(to, ((const uint32_t *)numbers)[at]);
+}
+
+static hewn_result write_numbers(const file *of, put_number put, const void *numbers, uint64_t count, hewn_error *error)
 {
     char block[4096];
     for (uint64_t at = 0; at < count;) {
         char *to = block;
         for (; at < count && to < block + sizeof block; at++)
-            to = indices  ? hewn_put_u32(to, indices[at])
-                 : floats ? hewn_put_float(to, floats[at])
-                          : hewn_put_float(to, (float)doubles[at]);
+            to = put(numbers, at, to);
         HEWN_TRY(hewn_output_write(of->output, block, (size_t)(to - block), error));
     }
     return HEWN_OK;
@@ -285,11 +299,11 @@ static hewn_result write_object(const file *of, const hewn_model *model, hewn_er
     float *normals = make_normals(model);
     if (!normals)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
-    hewn_result result = write_numbers(of, model->positions, NULL, NULL, 3 * model->vertex_count, error);
+    hewn_result result = write_numbers(of, put_rounded, model->positions, 3 * model->vertex_count, error);
     if (result == HEWN_OK)
-        result = write_numbers(of, NULL, normals, NULL, 3 * model->vertex_count, error);
+        result = write_numbers(of, put_float, normals, 3 * model->vertex_count, error);
     if (result == HEWN_OK)
-        result = write_numbers(of, NULL, NULL, model->corners, 3 * model->face_count, error);
+        result = write_numbers(of, put_index, model->corners, 3 * model->face_count, error);
     hewn_free(normals);
     return result;
 }

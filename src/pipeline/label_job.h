@@ -43,27 +43,26 @@ typedef struct hewn_label_fact {
 /* Zero is the empty one; leave it with hewn_label_report_destroy(). */
 typedef struct hewn_label_report {
     char *input, *output;
+    hewn_label_fact *labels;
+    int64_t *missing; /* labels that were asked for but have no voxel */
+    uint32_t label_count, missing_count;
     hewn_volume_format from;
     hewn_mesh_format to;
     uint32_t dims[3];
-    hewn_label_fact *labels;
-    uint32_t label_count;
-    int64_t *missing; /* labels that were asked for but have no voxel */
-    uint32_t missing_count;
-    uint32_t unnamed_count; /* labels that the table has not; 0 where there is no table */
-    uint32_t relaxations;
-    bool smoothed;
-    hewn_smooth_method smooth_method;
-    hewn_smooth_report smooth;
+    uint32_t unnamed_count;   /* labels that the table has not; 0 where there is no table */
     uint64_t vertices, faces; /* of the mesh that the shells share */
-    bool anatomical;
-    bool unit_assumed;          /* nobody said the unit, and millimetres were taken */
-    hewn_conversion conversion; /* from the volume's world to the output */
-    bool up_known;
+    hewn_smooth_report smooth;
+    hewn_conversion conversion;  /* from the volume's world to the output */
     hewn_report_stage stages[8]; /* load, label, smooth, certify, write */
-    uint32_t stage_count;
     uint64_t peak_host_bytes;
     double seconds;
+    uint32_t stage_count;
+    uint32_t relaxations;
+    hewn_smooth_method smooth_method; /* where it was smoothed */
+    bool smoothed;
+    bool anatomical;
+    bool unit_assumed; /* nobody said the unit, and millimetres were taken */
+    bool up_known;
 } hewn_label_report;
 
 /* Runs a job. What can be refused early is, before the volume is read; nothing is left behind after a failure, but
