@@ -44,7 +44,7 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
 
 const hewn_command hewn_command_convert = {
     .name = "convert",
-    .summary = "write a mesh file in another format, unit or axes; label volumes to meshes",
+    .summary = "write a mesh in another format, unit or axes; mesh labels",
     .usage = "FILE -o FILE [OPTION]...",
     .about = "Reads a mesh (.glb, .gltf, .obj, .ply, .stl, .off, also with .gz) and writes it\n"
              "as it is: polygons, order of vertices, attributes and double precision stay\n"
