@@ -11,6 +11,7 @@
 #include "hewn/file_job.h"
 #include "hewn/io.h"
 #include "hewn/job.h"
+#include "hewn/labels.h"
 #include "hewn/mesh.h"
 #include "hewn/mesh_views.h"
 #include "hewn/model.h"

@@ -77,6 +77,21 @@ HEWN_API hewn_result hewn_model_write(const hewn_model *model, const char *path,
 HEWN_API hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *path,
                                           const hewn_write_desc *desc, hewn_error *error);
 
+/* One of several objects in a file: a model of triangles with a name and a colour. */
+typedef struct hewn_object {
+    const hewn_model *model; /* in metres, +Y up; channels are not looked at */
+    const char *name;        /* UTF-8 */
+    uint8_t color[4];        /* red, green, blue as on a screen (sRGB), opacity */
+} hewn_object;
+
+/* Writes objects as a GLB file, each a node with a mesh, normals and a material of its colour. `numbers`, one an object
+ * or NULL, go to the nodes' extras as "label". Vertices are those of the models, so that what is shared by closed
+ * models has the same bits. HEWN_LIMIT for more than 4 GiB or a position that a float cannot hold, before anything is
+ * written; HEWN_INVALID_ARGUMENT for faces that are no triangles; HEWN_IO; HEWN_CANCELLED; HEWN_OUT_OF_MEMORY.
+ * `progress` may be NULL, its stage is "write". */
+HEWN_API hewn_result hewn_objects_write_glb(const hewn_object *objects, size_t count, const int64_t *numbers,
+                                            const char *path, const hewn_progress *progress, hewn_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -24,6 +24,7 @@ static const room rooms[] = {
     {"volume", "base geom"},
     {"mesh", "base geom"},
     {"smooth", "base geom mesh"},
+    {"labels", "base geom volume mesh smooth"},
     {"subdivide", "base geom mesh"},
     {"simplify", "base geom mesh"},
     {"field", "base geom"},
@@ -33,7 +34,7 @@ static const room rooms[] = {
     {"render", "base geom field gpu eval"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth subdivide simplify field gpu eval iso render scene io"},
+    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -53,6 +54,7 @@ static const header headers[] = {
     {"hewn", "hewn"},       {"smooth", "smooth"},      {"subdivide", "subdivide"},
     {"volume", "volume"},   {"volume_io", "io"},       {"simplify", "simplify"},
     {"distance", "mesh"},   {"volume_extract", "iso"}, {"volume_job", "pipeline"},
+    {"labels", "labels"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
