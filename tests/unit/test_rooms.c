@@ -26,13 +26,14 @@ static const room rooms[] = {
     {"smooth", "base geom mesh"},
     {"subdivide", "base geom mesh"},
     {"field", "base geom"},
+    {"lanes", "base field"},
     {"gpu", "base"},
     {"eval", "base geom field gpu"},
     {"iso", "base geom field gpu eval"},
-    {"render", "base geom field gpu eval"},
+    {"render", "base geom field lanes gpu eval"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth subdivide field gpu eval iso render scene io"},
+    {"pipeline", "base geom volume mesh smooth subdivide field lanes gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
