@@ -19,6 +19,7 @@
 #define HEWN_RAY_STEPS 4096u
 #define HEWN_SHADOW_STEPS 512u
 #define HEWN_SKIP_STEPS 256u
+#define HEWN_LIGHT_STEPS 48u
 
 #define HEWN_TRACE_SHADE 1u  /* flags: find out about light and openness */
 #define HEWN_TRACE_GROUND 2u /* there is a ground */

@@ -22,9 +22,8 @@ typedef struct walker {
     const hewn_ray *ray;
     const hewn_cell *cell;
     float t, end, stride, after;
-    float nearest; /* the least tangent of the angle by which it passes */
     uint32_t steps;
-    bool met, ran_out;
+    bool met, ran_out, asks;
 } walker;
 
 /* What a thread has. */
@@ -153,18 +152,45 @@ static void box_step(const walker *w, hewn_lane_boxes *boxes, uint32_t lane)
     }
 }
 
-static void take_step(const crew *c, walker *w, float lo, float value)
+static void take_step(const crew *c, walker *w, float lo)
 {
     float stride = w->after - w->t, near_enough = enough(c->stage, w->t);
     w->steps++;
-    if (lo > 0 || (stride <= near_enough && !(value <= 0))) {
-        w->nearest = fminf(w->nearest, value / (c->tracer->slope * fmaxf(w->after, near_enough)));
+    w->asks = false;
+    if (lo > 0) {
         w->t = w->after;
-        w->stride = lo > 0 ? 2 * fmaxf(stride, near_enough) : w->stride;
+        w->stride = 2 * fmaxf(stride, near_enough);
     } else if (stride > near_enough) {
         w->stride = fmaxf(0.4F * stride, 0.9F * near_enough);
     } else {
-        w->met = true;
+        w->asks = true;
+    }
+}
+
+/* Of so short a way no more is proven than that its end is outside. */
+static void ask_values(crew *c, const hewn_lane_tape *tape, walker *const *group, uint32_t count)
+{
+    hewn_lane_points points;
+    float values[HEWN_LANES];
+    walker *asking[HEWN_LANES];
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        float p[3];
+        if (!group[i]->asks)
+            continue;
+        place(group[i]->ray, group[i]->after, p);
+        for (int axis = 0; axis < 3; axis++)
+            points.at[axis][left] = p[axis];
+        asking[left++] = group[i];
+    }
+    if (left == 0)
+        return;
+    uint32_t lanes = left;
+    fill_up(&points, &lanes);
+    hewn_lanes_value(tape, &c->work, &points, lanes, values);
+    for (uint32_t i = 0; i < left; i++) {
+        asking[i]->met = values[i] <= 0;
+        asking[i]->t = asking[i]->met ? asking[i]->t : asking[i]->after;
     }
 }
 
@@ -172,21 +198,14 @@ static void take_step(const crew *c, walker *w, float lo, float value)
 static void step_together(crew *c, const hewn_lane_tape *tape, walker *const *group, uint32_t count)
 {
     hewn_lane_boxes boxes;
-    hewn_lane_points points;
-    float lo[HEWN_LANES], hi[HEWN_LANES], values[HEWN_LANES];
+    float lo[HEWN_LANES], hi[HEWN_LANES];
     uint32_t lanes = (count + HEWN_LANE_BLOCK - 1) / HEWN_LANE_BLOCK * HEWN_LANE_BLOCK;
-    for (uint32_t i = 0; i < lanes; i++) {
-        const walker *w = group[i < count ? i : count - 1];
-        float p[3];
-        box_step(w, &boxes, i);
-        place(w->ray, w->after, p);
-        for (int axis = 0; axis < 3; axis++)
-            points.at[axis][i] = p[axis];
-    }
+    for (uint32_t i = 0; i < lanes; i++)
+        box_step(group[i < count ? i : count - 1], &boxes, i);
     hewn_lanes_bound(tape, &c->work, &boxes, lanes, lo, hi);
-    hewn_lanes_value(tape, &c->work, &points, lanes, values);
     for (uint32_t i = 0; i < count; i++)
-        take_step(c, group[i], lo[i], values[i]);
+        take_step(c, group[i], lo[i]);
+    ask_values(c, tape, group, count);
 }
 
 /* Until all have met something, or ended, or taken `most` steps. */
@@ -226,7 +245,7 @@ static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
 static walker start(const crew *c, const hewn_ray *ray)
 {
     const hewn_cell *root = c->tracer->octree.cells;
-    walker w = {.ray = ray, .t = ray->begin, .end = ray->end, .nearest = FAR_AWAY};
+    walker w = {.ray = ray, .t = ray->begin, .end = ray->end};
     clip(root->lo, root->hi, ray, &w.t, &w.end);
     w.stride = 0.05F * (root->hi[0] - root->lo[0]);
     return w;
@@ -286,11 +305,41 @@ static void settle_normals(crew *c, const hewn_ray *rays, hewn_met *met, const u
     }
 }
 
+/* As edge_light() of the shader, all walkers together. */
+static void find_edges(crew *c, walker *walkers, const float *ends, hewn_met *const *lit, uint32_t count)
+{
+    const hewn_cell *root = c->tracer->octree.cells;
+    float shortest = 0.004F * (root->hi[0] - root->lo[0]), points[PACK][3], values[PACK];
+    for (uint32_t i = 0; i < count; i++)
+        walkers[i].t += shortest;
+    for (uint32_t round = 0; round < HEWN_LIGHT_STEPS; round++) {
+        uint32_t which[PACK], left = 0;
+        for (uint32_t i = 0; i < count; i++)
+            if (!walkers[i].met && walkers[i].t < ends[i]) {
+                place(walkers[i].ray, walkers[i].t, points[left]);
+                which[left++] = i;
+            }
+        visit_points(c, (const float(*)[3])points, left, take_values, values);
+        for (uint32_t i = 0; i < left; i++) {
+            walker *w = &walkers[which[i]];
+            float free = values[i] / c->tracer->slope;
+            lit[which[i]]->light = fminf(lit[which[i]]->light, free / (w->t * c->stage->softness));
+            w->t += fmaxf(0.5F * free, shortest + 0.03F * w->t);
+        }
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        float share = fminf(fmaxf(lit[i]->light, 0), 1);
+        lit[i]->light = walkers[i].met ? 0 : share * share * (3 - 2 * share);
+    }
+}
+
 static void find_light(crew *c, const float (*p)[3], hewn_met *const *lit, uint32_t count)
 {
     hewn_ray rays[PACK];
     walker walkers[PACK];
-    uint32_t which[PACK], left = 0;
+    hewn_met *open[PACK];
+    float begins[PACK], ends[PACK];
+    uint32_t left = 0;
     for (uint32_t i = 0; i < count; i++) {
         float facing = 0;
         for (int axis = 0; axis < 3; axis++)
@@ -301,14 +350,15 @@ static void find_light(crew *c, const float (*p)[3], hewn_met *const *lit, uint3
         memcpy(ray->along, c->stage->light, sizeof ray->along);
         walkers[left] = start(c, ray);
         lit[i]->light = facing > 0 ? 1 : 0;
+        begins[left] = walkers[left].t;
+        ends[left] = walkers[left].end;
         if (facing > 0 && walkers[left].t < walkers[left].end)
-            which[left++] = i;
+            open[left++] = lit[i];
     }
     march(c, walkers, left, HEWN_SHADOW_STEPS);
-    for (uint32_t i = 0; i < left; i++) {
-        float share = fminf(fmaxf(walkers[i].nearest / c->stage->softness, 0), 1);
-        lit[which[i]]->light = walkers[i].met ? 0 : share * share * (3 - 2 * share);
-    }
+    for (uint32_t i = 0; i < left; i++)
+        walkers[i].t = begins[i];
+    find_edges(c, walkers, ends, open, left);
 }
 
 static void find_openness(crew *c, const float (*p)[3], hewn_met *const *lit, uint32_t count)

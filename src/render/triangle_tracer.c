@@ -65,18 +65,21 @@ static float meet_triangle(const triangle_tracer *tracer, uint32_t triangle, con
 /* Where a ray enters each of four boxes; FAR_AWAY where it does not before `most`. NaN boxes are never entered. */
 static void enter_boxes(const hewn_boxes4 *boxes, const hewn_ray *ray, const float turned[3], float most, float near[4])
 {
-    for (int k = 0; k < 4; k++) {
-        float begin = ray->begin, end = most;
-        bool there = boxes->lo[0][k] <= boxes->hi[0][k];
-        for (int axis = 0; axis < 3; axis++) {
-            float a = (boxes->lo[axis][k] - ray->from[axis]) * turned[axis];
-            float b = (boxes->hi[axis][k] - ray->from[axis]) * turned[axis];
-            float first = a < b ? a : b, last = a < b ? b : a;
-            begin = first > begin ? first : begin;
-            end = last < end ? last : end;
+    float end[4] = {most, most, most, most};
+    for (int k = 0; k < 4; k++)
+        near[k] = ray->begin;
+    for (int axis = 0; axis < 3; axis++) {
+        const float *from = turned[axis] < 0 ? boxes->hi[axis] : boxes->lo[axis];
+        const float *to = turned[axis] < 0 ? boxes->lo[axis] : boxes->hi[axis];
+        for (int k = 0; k < 4; k++) {
+            float first = (from[k] - ray->from[axis]) * turned[axis], last = (to[k] - ray->from[axis]) * turned[axis];
+            near[k] = first > near[k] ? first : near[k];
+            end[k] = last < end[k] ? last : end[k];
         }
-        /* Rounding may take a ray off a box that it grazes. */
-        near[k] = there && begin <= end + 4e-7F * (fabsf(end) + fabsf(begin)) ? begin : FAR_AWAY;
+    }
+    for (int k = 0; k < 4; k++) { /* rounding may take a ray off a box that it grazes */
+        bool there = boxes->lo[0][k] <= boxes->hi[0][k];
+        near[k] = there && near[k] <= end[k] + 4e-7F * (fabsf(end[k]) + fabsf(near[k])) ? near[k] : FAR_AWAY;
     }
 }
 
@@ -170,28 +173,48 @@ static double triangle_distance(const triangle_tracer *tracer, uint32_t triangle
     return square;
 }
 
-/* How far a point is from the nearest triangle, at most `most`. */
+/* The squared distances of a point to four boxes; infinite to those that are not there. */
+static void box_distances(const hewn_boxes4 *boxes, const float point[3], float out[4])
+{
+    for (int k = 0; k < 4; k++)
+        out[k] = boxes->lo[0][k] <= boxes->hi[0][k] ? 0 : FAR_AWAY;
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = 0; k < 4; k++) {
+            float under = boxes->lo[axis][k] - point[axis], over = point[axis] - boxes->hi[axis][k];
+            float off = under > over ? under : over;
+            out[k] += off > 0 ? off * off : 0;
+        }
+}
+
+/* How far a point is from the nearest triangle, at most `most`: the nearest boxes first. */
 static float distance_to(const triangle_tracer *tracer, const float point[3], float most)
 {
-    float lo[3], hi[3];
+    const hewn_bvh *bvh = &tracer->bvh;
     double least = (double)most * (double)most;
-    for (int axis = 0; axis < 3; axis++) {
-        lo[axis] = point[axis] - most;
-        hi[axis] = point[axis] + most;
-    }
-    hewn_bvh_walk walk = hewn_bvh_walk_begin(&tracer->bvh, lo, hi, 0);
-    for (uint64_t block; hewn_bvh_walk_next(&walk, &block);)
-        for (uint32_t k = 0; k < 4; k++) {
-            double square = triangle_distance(tracer, tracer->bvh.order[4 * block + k], point);
-            if (square >= least)
+    place_in_tree stack[STACK];
+    uint32_t depth = 1;
+    stack[0] = (place_in_tree){0, bvh->level_count - 1, 0};
+    while (depth > 0) {
+        place_in_tree at = stack[--depth];
+        float near[4];
+        if ((double)at.near * (1 - 1e-5) >= least)
+            continue;
+        box_distances(&bvh->level[at.level][at.block], point, near);
+        for (int turn = 0; turn < 4; turn++) { /* the farthest first, so that the nearest is looked at next */
+            int farthest = 0;
+            for (int k = 1; k < 4; k++)
+                if (near[farthest] < 0 || near[k] > near[farthest])
+                    farthest = k;
+            float off = near[farthest];
+            near[farthest] = -1;
+            if ((double)off * (1 - 1e-5) >= least)
                 continue;
-            least = square;
-            float reach = (float)sqrt(square) * 1.000001F;
-            for (int axis = 0; axis < 3; axis++) {
-                walk.lo[axis] = point[axis] - reach;
-                walk.hi[axis] = point[axis] + reach;
-            }
+            if (at.level > 0)
+                stack[depth++] = (place_in_tree){4 * at.block + (uint64_t)farthest, at.level - 1, off};
+            else
+                least = fmin(least, triangle_distance(tracer, bvh->order[4 * at.block + (uint64_t)farthest], point));
         }
+    }
     return (float)sqrt(least);
 }
 
@@ -245,16 +268,21 @@ static float light_at(const triangle_tracer *tracer, const hewn_stage *stage, co
     return (float)seen / (float)asked;
 }
 
+/* From the highest point down: balls that touch the surface here lie in one another, so below an empty one all are. */
 static float openness_at(const triangle_tracer *tracer, const hewn_stage *stage, const float p[3],
                          const float normal[3])
 {
-    float taken = 0, all = 0, weight = 1;
-    for (int tap = 1; tap <= TAPS; tap++, weight *= 0.7F) {
+    static const float weights[TAPS] = {1, 0.7F, 0.49F, 0.343F, 0.2401F};
+    float taken = 0, all = 0;
+    bool empty = false;
+    for (int tap = TAPS; tap >= 1; tap--) {
         float height = stage->reach * (float)(tap * tap) / (TAPS * TAPS), q[3];
         for (int axis = 0; axis < 3; axis++)
             q[axis] = p[axis] + height * normal[axis];
-        taken += weight * (height - distance_to(tracer, q, height));
-        all += weight * height;
+        float free = empty ? height : distance_to(tracer, q, 0.97F * height) / 0.97F;
+        empty = free >= height * 0.9999F;
+        taken += weights[tap - 1] * fmaxf(height - free, 0);
+        all += weights[tap - 1] * height;
     }
     return 1 - taken / all;
 }
