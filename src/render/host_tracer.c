@@ -1,6 +1,7 @@
 /* Rays on the host, many at once: those in cells of the same tape go on together, by steps that interval bounds prove
  * free of surface. What a ray does is what shaders/render/trace.glsl does by intervals. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/alloc.h"
@@ -8,7 +9,7 @@
 #include "render/octree.h"
 #include "render/tracer.h"
 
-enum { PACK = 256, TAPS = 5 };
+enum { PACK = 1024, TAPS = 5 };
 #define FAR_AWAY 3.0e38F
 
 typedef struct host_tracer {
@@ -69,27 +70,45 @@ static void fill_up(hewn_lane_points *points, uint32_t *count)
             points->at[axis][*count] = points->at[axis][last];
 }
 
+/* A point, or a ray, and the tape that it needs. */
+typedef struct wanting {
+    const hewn_lane_tape *tape;
+    uint32_t number;
+} wanting;
+
+static int by_tape(const void *a, const void *b)
+{
+    const wanting *p = a, *q = b;
+    if (p->tape != q->tape)
+        return (uintptr_t)p->tape < (uintptr_t)q->tape ? -1 : 1;
+    return (p->number > q->number) - (p->number < q->number);
+}
+
+/* How many after `first` want the same tape, at most as many as there are lanes. */
+static uint32_t run_of(const wanting *sorted, uint32_t first, uint32_t count)
+{
+    uint32_t end = first + 1;
+    while (end < count && end - first < HEWN_LANES && sorted[end].tape == sorted[first].tape)
+        end++;
+    return end - first;
+}
+
 static void visit_points(crew *c, const float (*p)[3], uint32_t count, visit *each, void *out)
 {
-    const hewn_lane_tape *tapes[PACK * TAPS];
+    wanting sorted[PACK * TAPS];
     uint32_t which[HEWN_LANES];
     for (uint32_t i = 0; i < count; i++)
-        tapes[i] = hewn_octree_find(&c->tracer->octree, p[i])->tape;
-    for (uint32_t i = 0; i < count; i++) {
-        const hewn_lane_tape *tape = tapes[i];
-        if (!tape)
-            continue;
+        sorted[i] = (wanting){hewn_octree_find(&c->tracer->octree, p[i])->tape, i};
+    qsort(sorted, count, sizeof *sorted, by_tape);
+    for (uint32_t first = 0, taken; first < count; first += taken) {
         hewn_lane_points points;
-        uint32_t taken = 0;
-        for (uint32_t k = i; k < count && taken < HEWN_LANES; k++) {
-            if (tapes[k] != tape)
-                continue;
+        taken = run_of(sorted, first, count);
+        for (uint32_t i = 0; i < taken; i++) {
+            which[i] = sorted[first + i].number;
             for (int axis = 0; axis < 3; axis++)
-                points.at[axis][taken] = p[k][axis];
-            which[taken++] = k;
-            tapes[k] = NULL;
+                points.at[axis][i] = p[which[i]][axis];
         }
-        each(c, tape, &points, which, taken, out);
+        each(c, sorted[first].tape, &points, which, taken, out);
     }
 }
 
@@ -212,6 +231,7 @@ static void step_together(crew *c, const hewn_lane_tape *tape, walker *const *gr
 static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
 {
     walker *active[PACK];
+    wanting sorted[PACK];
     uint32_t left = 0;
     for (uint32_t i = 0; i < count; i++)
         active[left++] = &walkers[i];
@@ -227,17 +247,15 @@ static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
                 active[kept++] = w;
         }
         left = kept;
-        uint8_t taken[PACK] = {0};
-        for (uint32_t i = 0; i < left; i++) {
+        for (uint32_t i = 0; i < left; i++)
+            sorted[i] = (wanting){active[i]->cell->tape, i};
+        qsort(sorted, left, sizeof *sorted, by_tape);
+        for (uint32_t first = 0, taken; first < left; first += taken) {
             walker *group[HEWN_LANES];
-            uint32_t size = 0;
-            for (uint32_t k = i; k < left && !taken[i] && size < HEWN_LANES; k++)
-                if (!taken[k] && active[k]->cell->tape == active[i]->cell->tape) {
-                    group[size++] = active[k];
-                    taken[k] = k > i;
-                }
-            if (size > 0)
-                step_together(c, active[i]->cell->tape, group, size);
+            taken = run_of(sorted, first, left);
+            for (uint32_t i = 0; i < taken; i++)
+                group[i] = active[sorted[first + i].number];
+            step_together(c, sorted[first].tape, group, taken);
         }
     }
 }
@@ -442,7 +460,7 @@ static hewn_result trace(void *self, const hewn_stage *stage, const hewn_ray *ra
     {
         crew c = {.tracer = tracer, .stage = stage};
         hewn_result result = hewn_lane_work_create(tracer->octree.whole, &c.work, NULL);
-#pragma omp for schedule(dynamic, 4)
+#pragma omp for schedule(dynamic)
         for (size_t first = 0; first < count; first += PACK) {
             uint32_t taken = (uint32_t)(count - first < PACK ? count - first : PACK);
             if (result == HEWN_OK)

@@ -2,6 +2,9 @@
 
 #include <math.h>
 
+/* How near is on the surface, in pixels: thinner features may be missed, and shapes may look thicker by as much. */
+#define NEAR 0.02
+
 hewn_stage hewn_stage_of(const hewn_lens *lens, const hewn_render_desc *desc, const hewn_box *box)
 {
     int up = hewn_axis_index(desc->up);
@@ -19,8 +22,8 @@ hewn_stage hewn_stage_of(const hewn_lens *lens, const hewn_render_desc *desc, co
         double part = light[i] / sqrt(length);
         stage.light[i] = fabs(part) < 1e-12 ? 1e-12F : (float)part;
     }
-    stage.nearness = (float)fmax(lens->parallel ? 0.25 * pixel : 0, 4e-7 * fmax(size, farthest));
-    stage.spread = lens->parallel ? 0 : (float)(0.25 * pixel);
+    stage.nearness = (float)fmax(lens->parallel ? NEAR * pixel : 0, 4e-7 * fmax(size, farthest));
+    stage.spread = lens->parallel ? 0 : (float)(NEAR * pixel);
     return stage;
 }
 

@@ -5,8 +5,8 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
-/* Cells are halved where tapes are long until they are 2^-5 of the box, and where they are short to 2^-4. */
-enum { LEVELS = 5, LEVELS_SHORT = 4, SHORT = 32, CHILDREN = 8 };
+/* Cells are halved where tapes are long until they are 2^-6 of the box, and where they are short to 2^-4. */
+enum { LEVELS = 6, LEVELS_SHORT = 4, SHORT = 32, CHILDREN = 8 };
 
 static void box_child(const hewn_cell *cell, uint32_t child, float lo[3], float hi[3])
 {

@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "render/light.h"
 
-enum { TILE = 8, BATCH = 1 << 17, MOST_SAMPLES = 64, USUAL_SAMPLES = 4 };
+enum { TILE = 32, BATCH = 1 << 17, MOST_SAMPLES = 64, USUAL_SAMPLES = 4 };
 
 struct hewn_renderer {
     hewn_tracer tracer;

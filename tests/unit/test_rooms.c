@@ -45,11 +45,12 @@ typedef struct header {
 } header;
 
 static const header headers[] = {
-    {"base", "open"},     {"field", "open"},          {"triangles", "open"},    {"device", "gpu"},
-    {"check", "mesh"},    {"units", "open"},          {"model", "mesh"},        {"mesh", "mesh"},
-    {"repair", "mesh"},   {"mesh_views", "mesh"},     {"extract", "iso"},       {"scene", "scene"},
-    {"io", "io"},         {"job", "pipeline"},        {"file_job", "pipeline"}, {"hewn", "hewn"},
-    {"smooth", "smooth"}, {"subdivide", "subdivide"}, {"volume", "volume"},     {"volume_io", "io"},
+    {"base", "open"},     {"field", "open"},          {"triangles", "open"},      {"device", "gpu"},
+    {"check", "mesh"},    {"units", "open"},          {"model", "mesh"},          {"mesh", "mesh"},
+    {"repair", "mesh"},   {"mesh_views", "mesh"},     {"extract", "iso"},         {"scene", "scene"},
+    {"io", "io"},         {"job", "pipeline"},        {"file_job", "pipeline"},   {"hewn", "hewn"},
+    {"smooth", "smooth"}, {"subdivide", "subdivide"}, {"volume", "volume"},       {"volume_io", "io"},
+    {"picture", "open"},  {"render", "render"},       {"render_job", "pipeline"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
