@@ -51,7 +51,7 @@ void step_by_spheres(inout March m, vec3 from, vec3 along, float near_enough)
         m.free = m.last = 0.0;
         return;
     }
-    m.met = radius < near_enough;
+    m.met = value <= 0.0; /* and not where it is small: past a sharp edge it may be so without surface */
     m.free = max(radius, near_enough);
     m.last = m.relaxation * m.free;
     m.t += m.met ? 0.0 : m.last;

@@ -80,8 +80,7 @@ static double march(const hewn_field *field, double x, double z)
     return (double)NAN;
 }
 
-/* No pixel may show more than what is there, nor miss what dense marching finds; only where the surface is grazed, so
- * that a neighbour of a pixel differs by as much, may the two differ. */
+/* No pixel may show more than what is there, nor miss what dense marching finds, but at silhouettes. */
 static void check_depths(const hewn_field *field, const hewn_picture *picture, const hewn_camera *camera)
 {
     unsigned hits = 0;
@@ -94,12 +93,17 @@ static void check_depths(const hewn_field *field, const hewn_picture *picture, c
             hits += !isnan(expected);
             if ((isnan(found) && isnan(expected)) || fabs(found - expected) < 0.3 * pixel + 2.0 / STEPS)
                 continue;
-            bool agrees = false; /* with what is seen a hair beside it */
-            for (int k = 0; k < 8 && !agrees; k++) {
-                double there = march(field, x + 0.3 * pixel * cos(k * M_PI / 4), z + 0.3 * pixel * sin(k * M_PI / 4));
-                agrees = (isnan(there) && isnan(found)) || fabs(found - there) < 0.6 * pixel;
+            /* Where the surface is grazed depths change fast: then it is one that is seen a hair beside. */
+            double least = expected, most = expected;
+            bool nothing = false;
+            for (int k = 0; k < 8; k++) {
+                double there = march(field, x + 0.15 * pixel * cos(k * M_PI / 4), z + 0.15 * pixel * sin(k * M_PI / 4));
+                least = fmin(least, there);
+                most = fmax(most, there);
+                nothing = nothing || isnan(there);
             }
-            if (!agrees)
+            bool between = found > least - 0.1 * pixel && found < most + 0.1 * pixel;
+            if (!(isnan(found) ? nothing : between))
                 fail_msg("pixel %d, %d: %g instead of %g", u, v, found, expected);
         }
     assert_true(hits > SIDE * SIDE / 20);
@@ -120,6 +124,7 @@ static void check_field(maker *make, uint32_t seed)
         GPU_TEST_TRY(hewn_render(renderer, &desc, &picture, &stats, &error));
         assert_int_equal(stats.on_host, host);
         assert_int_equal(stats.ran_out, 0);
+        print_message("# field %u, %s\n", seed, host ? "host" : "device");
         check_depths(field, &picture, &desc.camera);
         hewn_picture_destroy(&picture);
         hewn_renderer_destroy(&renderer);
