@@ -19,12 +19,12 @@ static void other(const hewn_lane_tape *tape, const hewn_lane_step *step, float 
 
 static inline float least(float a, float b)
 {
-    return (b < a) | (b != b) ? b : a;
+    return ((b < a) | (b != b)) ? b : a;
 }
 
 static inline float greatest(float a, float b)
 {
-    return (b > a) | (b != b) ? b : a;
+    return ((b > a) | (b != b)) ? b : a;
 }
 
 /* As f_blend_quadratic of the shaders. */

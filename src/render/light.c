@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* How near is on the surface, in pixels: thinner features may be missed, and shapes may look thicker by as much. */
+/* How near is on the surface, in pixels: thinner features may be missed. */
 #define NEAR 0.02
 
 hewn_stage hewn_stage_of(const hewn_lens *lens, const hewn_render_desc *desc, const hewn_box *box)
