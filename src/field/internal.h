@@ -3,6 +3,7 @@
 #define HEWN_SRC_FIELD_INTERNAL_H
 
 #include "field/graph.h"
+#include "field/operate.h"
 
 #define HEWN_NO_ID 0xFFFFFFFFu
 
@@ -31,9 +32,6 @@ bool hewn_node_fold(const hewn_field *field, hewn_node_data *data, uint32_t *exi
 
 /* The row (a, b, c, d) of a node that is a x + b y + c z + d; false for any other node. */
 bool hewn_node_row(const hewn_field *field, uint32_t id, double row[4]);
-
-/* The value of an operation (none of X, Y, Z) for operand values in double. */
-double hewn_op_point(const hewn_node_data *node, const double in[3]);
 
 /* The nodes under one root, numbered without gaps, so that evaluators need one array and no look-up. */
 typedef struct hewn_step {
