@@ -5,9 +5,9 @@
 #include "field/internal.h"
 #include "field/interval.h"
 
-static hewn_interval unary(hewn_op op, hewn_interval a)
+static hewn_interval unary(const hewn_node_data *node, hewn_interval a)
 {
-    switch (op) {
+    switch (node->op) {
     case HEWN_OP_NEG: return hewn_interval_neg(a);
     case HEWN_OP_ABS: return hewn_interval_abs(a);
     case HEWN_OP_SQRT: return hewn_interval_sqrt(a);
@@ -24,6 +24,7 @@ static hewn_interval unary(hewn_op op, hewn_interval a)
     case HEWN_OP_CEIL: return hewn_interval_ceil(a);
     case HEWN_OP_ROUND: return hewn_interval_round(a);
     case HEWN_OP_NOT: return hewn_interval_not(a);
+    case HEWN_OP_ZIGZAG: return hewn_interval_zigzag(a, node->parameter[0]);
     default: return hewn_interval_all();
     }
 }
@@ -60,7 +61,7 @@ hewn_interval hewn_tape_bound(const hewn_tape *tape, const hewn_box *bounds, hew
                 scratch[i] = (hewn_interval){bounds->lo[axis], bounds->hi[axis], false};
             }
             break;
-        case 1: scratch[i] = unary(node->op, scratch[step->in[0]]); break;
+        case 1: scratch[i] = unary(node, scratch[step->in[0]]); break;
         case 2: scratch[i] = binary(node, scratch[step->in[0]], scratch[step->in[1]]); break;
         default: {
             hewn_interval in[3] = {scratch[step->in[0]], scratch[step->in[1]], scratch[step->in[2]]};

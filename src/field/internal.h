@@ -35,6 +35,27 @@ bool hewn_node_row(const hewn_field *field, uint32_t id, double row[4]);
 /* The value of an operation (none of X, Y, Z) for operand values in double. */
 double hewn_op_point(const hewn_node_data *node, const double in[3]);
 
+/* Noise, which is the same on every device but for the rounding of its sums: noise.c. */
+double hewn_noise_point(const hewn_node_data *node, const double in[3]);
+
+/* Value, then the derivatives after the three operands. */
+void hewn_noise_slopes(const hewn_node_data *node, const double in[3], double out[4]);
+hewn_interval hewn_noise_interval(const hewn_node_data *node, const hewn_interval in[3]);
+
+static inline bool hewn_op_is_noise(hewn_op op)
+{
+    return op >= HEWN_OP_NOISE_VALUE && op <= HEWN_OP_NOISE_CELLULAR;
+}
+
+/* A side of a polygon against a point: square distance and its direction (not of length 1) away from the side, the side
+ * the point is on, and whether a ray from it along x crosses. */
+typedef struct hewn_side {
+    double square, away[2];
+    bool crossed;
+} hewn_side;
+
+hewn_side hewn_side_of(const double p[4], double x, double y);
+
 /* The nodes under one root, numbered without gaps, so that evaluators need one array and no look-up. */
 typedef struct hewn_step {
     const hewn_node_data *node;

@@ -123,7 +123,8 @@ static rule rule_of(const hewn_tape *tape, const hewn_step *step, bool above, do
     case HEWN_OP_CONSTANT:
     case HEWN_OP_AFFINE:
     case HEWN_OP_PLANE: return (rule){RULE_LEAF, 0, {{0}}};
-    default: return !above && hewn_op_infos[step->node->op].operands == 3 ? (rule){RULE_LEAF, 0, {{0}}} : unknown;
+    default:
+        return !above && step->node->op >= HEWN_OP_SPHERE && step->node->op <= HEWN_OP_CONE ? (rule){RULE_LEAF, 0, {{0}}} : unknown;
     }
 }
 
