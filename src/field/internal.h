@@ -86,4 +86,8 @@ typedef struct hewn_region {
 /* A region that contains every point where the last step is below 0, or 0, read off the shapes of the graph alone. */
 hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out, hewn_error *error);
 
+/* The region that the graph alone tells, whose sides may be infinite; false where it tells that the shape is empty, or
+ * nothing for lack of memory. */
+bool hewn_field_known_box(const hewn_field *field, hewn_node node, hewn_box *out);
+
 #endif
