@@ -61,14 +61,15 @@ precise vec4 f_noise_cellular(const vec4 a, const vec4 b, const vec4 c, const fl
 
 //: edge
 /* A link carries the unit direction away from the nearest edge in place of a derivative: along an edge its normal, which
- * is right on the edge too. */
+ * is right on the edge too: a point there counts as right of an edge that rises or falls, and as above a level one. */
 precise vec4 f_edge(const vec4 chain, const vec4 x, const vec4 y, const float ax, const float ay, const float bx,
                     const float by, const float inverse)
 {
     f_side side = f_side_of(x.w, y.w, ax, ay, bx, by, inverse);
     float value = f_edge(chain.w, x.w, y.w, ax, ay, bx, by, inverse);
     vec2 edge = vec2(bx - ax, by - ay), away = side.away;
-    vec2 normal = vec2(-edge.y, edge.x) * f_pick(side.turn < 0.0, -1.0, 1.0);
+    bool level = side.turn == 0.0 && edge.y == 0.0 && edge.x > 0.0, left = side.turn > 0.0;
+    vec2 normal = vec2(-edge.y, edge.x) * f_pick(left || level, 1.0, -1.0);
     bool beside = side.t > 0.0 && side.t < 1.0;
     away = mix(away, normal, bvec2(beside));
     vec2 unit = away * f_inverse(f_length(away.x, away.y));

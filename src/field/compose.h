@@ -66,15 +66,23 @@ static inline hewn_node box_around(hewn_field *f, const hewn_box *box)
     return hewn_field_add_node(f, &data);
 }
 
+/* How much larger than a shape the box around it is made, so that the two never touch. */
+#define ROOM 0x1p-10
+
 /* A shape that is known to lie in this box. The distance to a shape is never below that to a box around it, so this
  * changes nothing of a distance; of other fields it betters what lies far outside. Boxes are found, and far bricks
  * culled, by it. */
 static inline hewn_node bounded(hewn_field *f, hewn_node shape, const hewn_box *box)
 {
-    for (int i = 0; i < 3; i++)
-        if (!(box->hi[i] - box->lo[i] > 0) || !isfinite(box->hi[i] - box->lo[i]))
+    hewn_box larger;
+    for (int i = 0; i < 3; i++) {
+        double side = box->hi[i] - box->lo[i];
+        if (!(side > 0) || !isfinite(side))
             return shape;
-    return hewn_max(f, shape, box_around(f, box));
+        larger.lo[i] = box->lo[i] - ROOM * side;
+        larger.hi[i] = box->hi[i] + ROOM * side;
+    }
+    return hewn_max(f, shape, box_around(f, &larger));
 }
 
 static inline hewn_node bounded_by(hewn_field *f, hewn_node shape, double x, double y, double z)
@@ -87,7 +95,7 @@ static inline hewn_node bounded_by_cylinder(hewn_field *f, hewn_node shape, doub
 {
     if (!(radius > 0) || !(high > low) || !isfinite(radius + high - low))
         return shape;
-    hewn_node around = hewn_cylinder(f, radius, high - low);
+    hewn_node around = hewn_cylinder(f, radius * (1 + ROOM), (high - low) * (1 + 2 * ROOM));
     return hewn_max(f, shape, hewn_translate(f, around, 0, 0.5 * (low + high), 0));
 }
 

@@ -83,8 +83,9 @@ hewn_side hewn_side_of(const double p[4], double x, double y)
     double cross = ex * dy - ey * dx;
     bool up = p[1] <= y, next = p[3] <= y;
     hewn_side out = {.crossed = up != next && (cross > 0) == up};
-    if (t > 0 && t < 1) { /* the side's own normal, which is right on the side too */
-        double turn = cross < 0 ? -1 : 1;
+    if (t > 0 && t < 1) { /* the side's own normal, which is right on the side too: a point there counts as right of a
+                             side that rises or falls, and as above a level one */
+        double turn = cross > 0 || (cross == 0 && ey == 0 && ex > 0) ? 1 : -1;
         out.away[0] = -ey * turn;
         out.away[1] = ex * turn;
         out.square = cross * cross / (ex * ex + ey * ey);

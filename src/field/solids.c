@@ -84,7 +84,7 @@ static hewn_node planes_of_octants(hewn_field *f, const double (*normals)[3], in
             affine(f, axis[0], axis[1], axis[2], (const double[4]){n[0] / length, n[1] / length, n[2] / length, -inner});
         out = i == 0 ? face : hewn_max(f, out, face);
     }
-    return hewn_max(f, out, hewn_sphere(f, radius));
+    return hewn_max(f, out, hewn_sphere(f, radius * (1 + ROOM)));
 }
 
 hewn_node hewn_octahedron(hewn_field *f, double radius)
