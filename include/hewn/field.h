@@ -133,12 +133,12 @@ HEWN_API hewn_node hewn_tetrahedron(hewn_field *field, double radius);
 HEWN_API hewn_node hewn_octahedron(hewn_field *field, double radius);
 HEWN_API hewn_node hewn_dodecahedron(hewn_field *field, double radius);
 HEWN_API hewn_node hewn_icosahedron(hewn_field *field, double radius);
-/* A round wire through `count` points (x, y, z triples; two or more); along cubic Bezier curves (an end, two controls, an
- * end, and so on), whose chords stay within a hundredth of the radius. Distances outside, lower bounds inside. */
+/* A round wire through `count` points (x, y, z triples; two or more); along cubic Bezier curves (an end, two controls,
+ * an end, and so on), whose chords stay within a hundredth of the radius. Distances outside, lower bounds inside. */
 HEWN_API hewn_node hewn_tube(hewn_field *field, const double *points, size_t count, double radius);
 HEWN_API hewn_node hewn_bezier_tube(hewn_field *field, const double *points, size_t count, double radius);
-/* A wire wound about the y axis, right-handed, `pitch` a turn, cut level at -height/2 and height/2. Near the wire about a
- * distance; no bound of one. */
+/* A wire wound about the y axis, right-handed, `pitch` a turn, cut level at -height/2 and height/2. Near the wire about
+ * a distance; no bound of one. */
 HEWN_API hewn_node hewn_helix(hewn_field *field, double radius, double pitch, double height, double wire);
 
 /* --- flat shapes: fields of x and y alone, endless along z -------------------------------------------------------- */
@@ -148,14 +148,15 @@ enum { HEWN_OUTLINE_MOST = 65536 /* points of a polygon */ };
 HEWN_API hewn_node hewn_circle(hewn_field *field, double radius);
 HEWN_API hewn_node hewn_rectangle(hewn_field *field, double width, double height);
 HEWN_API hewn_node hewn_ellipse(hewn_field *field, double x, double y); /* a lower bound */
-/* `count` corners (x, y pairs) in order, either way round; where sides cross, what lies within an odd number of loops is
- * inside. */
+/* `count` corners (x, y pairs) in order, either way round; where sides cross, what lies within an odd number of loops
+ * is inside. */
 HEWN_API hewn_node hewn_polygon(hewn_field *field, const double *points, size_t count);
 /* Corners at `radius` (of the star in turn at `outer` and `inner`), the first one on the y axis. */
 HEWN_API hewn_node hewn_regular_polygon(hewn_field *field, unsigned sides, double radius);
 HEWN_API hewn_node hewn_star(hewn_field *field, unsigned corners, double outer, double inner);
 
-/* A straight line (degree 1) or a Bezier curve from where the last one ended: `degree` points, the last of them its end. */
+/* A straight line (degree 1) or a Bezier curve from where the last one ended: `degree` points, the last of them its
+ * end. */
 typedef struct hewn_curve {
     unsigned degree; /* 1, 2 or 3 */
     double points[3][2];
@@ -173,7 +174,8 @@ HEWN_API hewn_node hewn_revolve(hewn_field *field, hewn_node shape);
 HEWN_API hewn_node hewn_loft(hewn_field *field, hewn_node bottom, hewn_node top, double height);
 
 /* --- periodic surfaces ----------------------------------------------------------------------------------------------
- * A walled sheet of about `thickness` (never less), or, where that is 0, one of the two halves of space. 1-Lipschitz. */
+ * A walled sheet of about `thickness` (never less), or, where that is 0, one of the two halves of space. 1-Lipschitz.
+ */
 
 HEWN_API hewn_node hewn_gyroid(hewn_field *field, double period, double thickness);
 HEWN_API hewn_node hewn_schwarz_p(hewn_field *field, double period, double thickness);
@@ -198,9 +200,9 @@ HEWN_API hewn_node hewn_noise(hewn_field *field, hewn_noise_kind kind, double si
 
 typedef struct hewn_octaves {
     hewn_noise_kind kind;
-    double size;      /* of the coarsest one's cells */
-    unsigned octaves; /* 1 to 16 */
-    double gain;      /* how much less each octave counts; 0 is 0.5 */
+    double size;       /* of the coarsest one's cells */
+    unsigned octaves;  /* 1 to 16 */
+    double gain;       /* how much less each octave counts; 0 is 0.5 */
     double lacunarity; /* how much finer it is; 0 is 2 */
     uint32_t seed;
 } hewn_octaves;

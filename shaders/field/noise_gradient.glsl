@@ -16,8 +16,7 @@ precise vec3 f_between_slope(const vec4 low, const vec4 high, const vec3 weight,
     vec4 square = low + weight.z * (high - low), rise = slope.z * (high - low);
     vec2 side = square.xy + weight.y * (square.zw - square.xy), along = slope.y * (square.zw - square.xy);
     vec2 up = rise.xy + weight.y * (rise.zw - rise.xy);
-    return vec3(slope.x * (side.y - side.x), along.x + weight.x * (along.y - along.x),
-                up.x + weight.x * (up.y - up.x));
+    return vec3(slope.x * (side.y - side.x), along.x + weight.x * (along.y - along.x), up.x + weight.x * (up.y - up.x));
 }
 
 //: noise_value lattice between
@@ -60,8 +59,9 @@ precise vec4 f_noise_cellular(const vec4 a, const vec4 b, const vec4 c, const fl
 }
 
 //: edge
-/* A link carries the unit direction away from the nearest edge in place of a derivative: along an edge its normal, which
- * is right on the edge too: a point there counts as right of an edge that rises or falls, and as above a level one. */
+/* A link carries the unit direction away from the nearest edge in place of a derivative: along an edge its normal,
+ * which is right on the edge too: a point there counts as right of an edge that rises or falls, and as above a level
+ * one. */
 precise vec4 f_edge(const vec4 chain, const vec4 x, const vec4 y, const float ax, const float ay, const float bx,
                     const float by, const float inverse)
 {

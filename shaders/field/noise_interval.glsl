@@ -1,5 +1,5 @@
-/* Bounds of noise, outlines and zigzags: about the value in the middle, from how steep they can be. A computed value errs
- * by some units, here and there. */
+/* Bounds of noise, outlines and zigzags: about the value in the middle, from how steep they can be. A computed value
+ * errs by some units, here and there. */
 //: lattice
 float f_reach(const vec2 a, const float middle)
 {

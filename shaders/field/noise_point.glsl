@@ -4,8 +4,7 @@
 //: lattice
 uint f_hash(const ivec3 cell, const uint seed)
 {
-    uint h =
-        uint(cell.x) * 0x9e3779b1u + uint(cell.y) * 0x94d049bbu + uint(cell.z) * 0xd1b54a33u + seed * 0x7f4a7c15u;
+    uint h = uint(cell.x) * 0x9e3779b1u + uint(cell.y) * 0x94d049bbu + uint(cell.z) * 0xd1b54a33u + seed * 0x7f4a7c15u;
     h ^= h >> 16;
     h *= 0x7feb352du;
     h ^= h >> 15;
@@ -146,8 +145,8 @@ float f_noise_simplex(const float a, const float b, const float c, const float s
 }
 
 //: noise_cellular lattice
-/* `best` is the way from the nearest point so far and, in w, its square length. Written out instead of in loops, because
- * an invocation has only so many iterations (docs/evaluation.md). */
+/* `best` is the way from the nearest point so far and, in w, its square length. Written out instead of in loops,
+ * because an invocation has only so many iterations (docs/evaluation.md). */
 precise vec4 f_feature(const ivec3 cell, const uint seed, const vec3 at, const int x, const int y, const int z,
                        const vec4 best)
 {

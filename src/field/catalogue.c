@@ -2,7 +2,8 @@
 
 #include <math.h>
 
-/* --- calls --------------------------------------------------------------------------------------------------------- */
+/* --- calls ---------------------------------------------------------------------------------------------------------
+ */
 
 #define V(i) (v[i].number)
 #define U(i) ((unsigned)v[i].number)
@@ -107,23 +108,69 @@ static hewn_node call_scale(hewn_field *field, const hewn_argument *v)
     return hewn_stretch(field, F(0), V(1), V(2), V(3));
 }
 
-/* --- arguments ----------------------------------------------------------------------------------------------------- */
+/* --- arguments -----------------------------------------------------------------------------------------------------
+ */
 
-#define SIZE(name) {name, HEWN_ARGUMENT_POSITIVE, 0, 0, false, 0}
-#define LENGTH(name) {name, HEWN_ARGUMENT_NOT_NEGATIVE, 0, 0, false, 0}
-#define NUMBER(name) {name, HEWN_ARGUMENT_NUMBER, 0, 0, false, 0}
-#define ANGLE(name) {name, HEWN_ARGUMENT_ANGLE, 0, 0, false, 0}
-#define FIELD(name) {name, HEWN_ARGUMENT_FIELD, 0, 0, false, 0}
-#define OPERAND(name) {name, HEWN_ARGUMENT_OPERAND, 0, 0, false, 0}
-#define WHOLE(name, least, most) {name, HEWN_ARGUMENT_WHOLE, least, most, false, 0}
-#define AXIS {"axis", HEWN_ARGUMENT_AXIS, 0, 0, false, 0}
-#define AXIS_ELSE(otherwise) {"axis", HEWN_ARGUMENT_AXIS, 0, 0, true, otherwise}
-#define POINTS {"points", HEWN_ARGUMENT_POINTS, 0, 0, false, 0}
-#define FLAT_POINTS {"points", HEWN_ARGUMENT_FLAT_POINTS, 0, 0, false, 0}
-#define CURVES {"curves", HEWN_ARGUMENT_CURVES, 0, 0, false, 0}
-#define SEED {"seed", HEWN_ARGUMENT_WHOLE, 0, 16777215, true, 0}
-#define KIND {"kind", HEWN_ARGUMENT_NOISE, 0, 0, true, HEWN_NOISE_GRADIENT}
-#define THICKNESS {"thickness", HEWN_ARGUMENT_NOT_NEGATIVE, 0, 0, true, 0}
+#define SIZE(name)                                                                                                     \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_POSITIVE, 0, 0, false, 0                                                                   \
+    }
+#define LENGTH(name)                                                                                                   \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_NOT_NEGATIVE, 0, 0, false, 0                                                               \
+    }
+#define NUMBER(name)                                                                                                   \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_NUMBER, 0, 0, false, 0                                                                     \
+    }
+#define ANGLE(name)                                                                                                    \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_ANGLE, 0, 0, false, 0                                                                      \
+    }
+#define FIELD(name)                                                                                                    \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_FIELD, 0, 0, false, 0                                                                      \
+    }
+#define OPERAND(name)                                                                                                  \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_OPERAND, 0, 0, false, 0                                                                    \
+    }
+#define WHOLE(name, least, most)                                                                                       \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_WHOLE, least, most, false, 0                                                               \
+    }
+#define AXIS                                                                                                           \
+    {                                                                                                                  \
+        "axis", HEWN_ARGUMENT_AXIS, 0, 0, false, 0                                                                     \
+    }
+#define AXIS_ELSE(otherwise)                                                                                           \
+    {                                                                                                                  \
+        "axis", HEWN_ARGUMENT_AXIS, 0, 0, true, otherwise                                                              \
+    }
+#define POINTS                                                                                                         \
+    {                                                                                                                  \
+        "points", HEWN_ARGUMENT_POINTS, 0, 0, false, 0                                                                 \
+    }
+#define FLAT_POINTS                                                                                                    \
+    {                                                                                                                  \
+        "points", HEWN_ARGUMENT_FLAT_POINTS, 0, 0, false, 0                                                            \
+    }
+#define CURVES                                                                                                         \
+    {                                                                                                                  \
+        "curves", HEWN_ARGUMENT_CURVES, 0, 0, false, 0                                                                 \
+    }
+#define SEED                                                                                                           \
+    {                                                                                                                  \
+        "seed", HEWN_ARGUMENT_WHOLE, 0, 16777215, true, 0                                                              \
+    }
+#define KIND                                                                                                           \
+    {                                                                                                                  \
+        "kind", HEWN_ARGUMENT_NOISE, 0, 0, true, HEWN_NOISE_GRADIENT                                                   \
+    }
+#define THICKNESS                                                                                                      \
+    {                                                                                                                  \
+        "thickness", HEWN_ARGUMENT_NOT_NEGATIVE, 0, 0, true, 0                                                         \
+    }
 #define OCTAVE_ARGUMENTS                                                                                               \
     SIZE("size"), WHOLE("octaves", 1, 16), SEED, KIND, {"gain", HEWN_ARGUMENT_POSITIVE, 0, 0, true, 0.5},              \
     {                                                                                                                  \
@@ -346,12 +393,14 @@ int hewn_function_arguments(const hewn_function *function, int *needed)
     return count;
 }
 
-/* --- text ---------------------------------------------------------------------------------------------------------- */
+/* --- text ----------------------------------------------------------------------------------------------------------
+ */
 
 const char *hewn_section_name(hewn_section section)
 {
-    static const char *const names[HEWN_SECTIONS] = {"solids",    "flat shapes", "into space", "periodic surfaces", "noise",
-                                                     "combining", "changing",    "moving",     "bending space"};
+    static const char *const names[HEWN_SECTIONS] = {"solids",       "flat shapes", "into space", "periodic surfaces",
+                                                     "noise",        "combining",   "changing",   "moving",
+                                                     "bending space"};
     return names[section];
 }
 

@@ -1,6 +1,6 @@
-/* Every function that makes a shape or changes one, described once: what it is called, what it takes, what it means, and
- * what may be said of its values. The Lua front end reads arguments by this table, docs/scene.md is written from it, and
- * tests go through it. */
+/* Every function that makes a shape or changes one, described once: what it is called, what it takes, what it means,
+ * and what may be said of its values. The Lua front end reads arguments by this table, docs/scene.md is written from
+ * it, and tests go through it. */
 #ifndef HEWN_SRC_FIELD_CATALOGUE_H
 #define HEWN_SRC_FIELD_CATALOGUE_H
 
@@ -66,9 +66,9 @@ typedef struct hewn_function {
     const char *name;
     hewn_section section;
     hewn_exactness exactness;
-    double slope;    /* no value differs by more than this times the distance (operands: 1); 0: no such number, the bounds
-                        are those of interval arithmetic */
-    int slope_over;  /* the argument, from 1, that the slope is divided by; 0 for none */
+    double slope; /* no value differs by more than this times the distance (operands: 1); 0: no such number, the bounds
+                     are those of interval arithmetic */
+    int slope_over;   /* the argument, from 1, that the slope is divided by; 0 for none */
     const char *call; /* how it is written, where the arguments do not say; then Lua reads them by hand */
     const char *meaning;
     hewn_argument_info arguments[HEWN_ARGUMENTS_MOST];

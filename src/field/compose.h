@@ -39,9 +39,9 @@ static inline hewn_node length_of_two(hewn_field *f, hewn_node a, hewn_node b)
 /* p a + q b + r c + s */
 static inline hewn_node affine(hewn_field *f, hewn_node a, hewn_node b, hewn_node c, const double p[4])
 {
-    return hewn_field_add_node(f, &(hewn_node_data){.op = HEWN_OP_AFFINE,
-                                                    .operand = {a.id, b.id, c.id},
-                                                    .parameter = {p[0], p[1], p[2], p[3]}});
+    return hewn_field_add_node(
+        f,
+        &(hewn_node_data){.op = HEWN_OP_AFFINE, .operand = {a.id, b.id, c.id}, .parameter = {p[0], p[1], p[2], p[3]}});
 }
 
 /* The distance to where both are below 0, from two distances along directions at right angles. What stands first says

@@ -1,6 +1,6 @@
 /* Shapes in bent, repeated and mirrored space: the graph again with other coordinates. Bounds of these are those of the
- * arithmetic, so nothing is claimed that could drop surface. Where the shape's own box is known, one around the result is
- * added, which culls what lies far away. */
+ * arithmetic, so nothing is claimed that could drop surface. Where the shape's own box is known, one around the result
+ * is added, which culls what lies far away. */
 #include "field/compose.h"
 
 static bool is_axis(hewn_field *f, const char *name, int axis)
@@ -37,7 +37,8 @@ static double farthest(const hewn_box *box, int axis)
     return fmax(fabs(box->lo[axis]), fabs(box->hi[axis]));
 }
 
-/* --- mirrors -------------------------------------------------------------------------------------------------------- */
+/* --- mirrors --------------------------------------------------------------------------------------------------------
+ */
 
 hewn_node hewn_mirror(hewn_field *f, hewn_node shape, int axis)
 {
@@ -50,10 +51,18 @@ hewn_node hewn_mirror(hewn_field *f, hewn_node shape, int axis)
 
 hewn_node hewn_symmetric(hewn_field *f, hewn_node shape, int axis)
 {
-    return is_axis(f, "symmetric", axis) ? remap_one(f, shape, axis, hewn_abs(f, axis_of(f, axis))) : HEWN_NODE_NONE;
+    hewn_box box;
+    if (!is_axis(f, "symmetric", axis))
+        return HEWN_NODE_NONE;
+    hewn_node out = remap_one(f, shape, axis, hewn_abs(f, axis_of(f, axis)));
+    if (!hewn_field_known_box(f, shape, &box))
+        return out;
+    box.lo[axis] = -box.hi[axis];
+    return bounded(f, out, &box);
 }
 
-/* --- copies --------------------------------------------------------------------------------------------------------- */
+/* --- copies ---------------------------------------------------------------------------------------------------------
+ */
 
 /* All of them in a balanced tree, which pruning cuts down fastest. */
 static hewn_node join_copies(hewn_field *f, hewn_node shape, size_t from, size_t to,
@@ -70,7 +79,8 @@ static bool few_enough(hewn_field *f, const char *name, hewn_node shape, double 
 {
     enum { NODES_MOST = 1 << 22 };
     if (copies < 1 || copies > HEWN_COPIES_MOST || copies * (double)hewn_field_size(f, shape) > NODES_MOST) {
-        hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "%s: %.0f copies of the shape are too many, or too few", name, copies);
+        hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "%s: %.0f copies of the shape are too many, or too few", name,
+                          copies);
         return false;
     }
     return true;
@@ -108,7 +118,8 @@ hewn_node hewn_radial(hewn_field *f, hewn_node shape, unsigned count, int axis)
     return join_copies(f, shape, 0, count, copy_around, how);
 }
 
-/* --- without end ---------------------------------------------------------------------------------------------------- */
+/* --- without end ----------------------------------------------------------------------------------------------------
+ */
 
 static bool spacing_is_fine(hewn_field *f, const char *name, const double *d)
 {
@@ -124,8 +135,8 @@ static bool spacing_is_fine(hewn_field *f, const char *name, const double *d)
     return some && fine;
 }
 
-/* A point sees the copies at the lattice places before and behind it, along each axis: all that reach it, where the shape
- * reaches no farther from its origin than the distance between copies. */
+/* A point sees the copies at the lattice places before and behind it, along each axis: all that reach it, where the
+ * shape reaches no farther from its origin than the distance between copies. */
 hewn_node hewn_tile(hewn_field *f, hewn_node shape, double dx, double dy, double dz)
 {
     const double d[3] = {dx, dy, dz};
@@ -159,16 +170,18 @@ hewn_node hewn_mirror_tile(hewn_field *f, hewn_node shape, double dx, double dy,
     for (int i = 0; i < 3; i++) {
         at[i] = axis_of(f, i);
         if (d[i] > 0) /* mirrors at -d/2 and d/2: counted from the first */
-            at[i] = plus(f, hewn_field_add_node(f, &(hewn_node_data){.op = HEWN_OP_ZIGZAG,
-                                                                     .operand = {plus(f, at[i], 0.5 * d[i]).id, HEWN_NO_ID,
-                                                                                 HEWN_NO_ID},
-                                                                     .parameter = {2 * d[i]}}),
+            at[i] = plus(f,
+                         hewn_field_add_node(
+                             f, &(hewn_node_data){.op = HEWN_OP_ZIGZAG,
+                                                  .operand = {plus(f, at[i], 0.5 * d[i]).id, HEWN_NO_ID, HEWN_NO_ID},
+                                                  .parameter = {2 * d[i]}}),
                          -0.5 * d[i]);
     }
     return hewn_remap(f, shape, at[0], at[1], at[2]);
 }
 
-/* --- bent space ----------------------------------------------------------------------------------------------------- */
+/* --- bent space -----------------------------------------------------------------------------------------------------
+ */
 
 hewn_node hewn_twist(hewn_field *f, hewn_node shape, double angle)
 {
@@ -185,8 +198,8 @@ hewn_node hewn_twist(hewn_field *f, hewn_node shape, double angle)
     return bounded_by_cylinder(f, out, hypot(farthest(&box, 0), farthest(&box, 2)), box.lo[1], box.hi[1]);
 }
 
-/* The line y = 0 becomes a circle through the origin around (0, 1 / angle): lengths along it stay. Where the shape's box
- * is known, a wedge keeps away the half-plane behind the centre, where angles jump. */
+/* The line y = 0 becomes a circle through the origin around (0, 1 / angle): lengths along it stay. Where the shape's
+ * box is known, a wedge keeps away the half-plane behind the centre, where angles jump. */
 hewn_node hewn_bend(hewn_field *f, hewn_node shape, double angle)
 {
     hewn_box box;
@@ -210,7 +223,8 @@ hewn_node hewn_bend(hewn_field *f, hewn_node shape, double angle)
     }
     double reach = fabs(radius) + inner, across = half < 0.5 * acos(-1) ? reach * sin(half) : reach;
     double low = fabs(radius) * (1 - cos(fmin(half, acos(-1)))) + inner;
-    hewn_box around_box = {{-across, radius > 0 ? -inner : -low, box.lo[2]}, {across, radius > 0 ? low : inner, box.hi[2]}};
+    hewn_box around_box = {{-across, radius > 0 ? -inner : -low, box.lo[2]},
+                           {across, radius > 0 ? low : inner, box.hi[2]}};
     return bounded(f, out, &around_box);
 }
 
@@ -245,7 +259,15 @@ hewn_node hewn_elongate(hewn_field *f, hewn_node shape, double x, double y, doub
         if (length[i] > 0) /* away from where the middle part ends */
             at[i] = hewn_sub(f, at[i], clamped(f, at[i], -0.5 * length[i], 0.5 * length[i]));
     }
-    return hewn_remap(f, shape, at[0], at[1], at[2]);
+    hewn_node out = hewn_remap(f, shape, at[0], at[1], at[2]);
+    hewn_box box;
+    if (!hewn_field_known_box(f, shape, &box))
+        return out;
+    for (int i = 0; i < 3; i++) {
+        box.lo[i] = box.lo[i] < 0 ? box.lo[i] - 0.5 * length[i] : fmin(box.lo[i], -0.5 * length[i]);
+        box.hi[i] = box.hi[i] > 0 ? box.hi[i] + 0.5 * length[i] : fmax(box.hi[i], 0.5 * length[i]);
+    }
+    return bounded(f, out, &box);
 }
 
 hewn_node hewn_warp(hewn_field *f, hewn_node shape, double amount, double size, uint32_t seed)
@@ -255,7 +277,8 @@ hewn_node hewn_warp(hewn_field *f, hewn_node shape, double amount, double size, 
         return HEWN_NODE_NONE;
     hewn_node at[3];
     for (uint32_t i = 0; i < 3; i++)
-        at[i] = hewn_add(f, axis_of(f, (int)i), times(f, hewn_noise(f, HEWN_NOISE_GRADIENT, size, (seed + i) % 0x1000000u), amount));
+        at[i] = hewn_add(f, axis_of(f, (int)i),
+                         times(f, hewn_noise(f, HEWN_NOISE_GRADIENT, size, (seed + i) % 0x1000000u), amount));
     hewn_node out = hewn_remap(f, shape, at[0], at[1], at[2]);
     if (!hewn_field_known_box(f, shape, &box))
         return out;

@@ -26,7 +26,8 @@ hewn_node hewn_ellipse(hewn_field *f, double x, double y)
     return times(f, plus(f, away, -1), fmin(x, y));
 }
 
-/* --- polygons ------------------------------------------------------------------------------------------------------ */
+/* --- polygons ------------------------------------------------------------------------------------------------------
+ */
 
 /* Links of the chain that an outline is. */
 typedef struct chain {
@@ -59,7 +60,8 @@ static hewn_node chain_closed(chain *own, const char *name)
 {
     chain_to(own, own->first[0], own->first[1]);
     if (own->edges < 3)
-        return hewn_field_refuse(own->field, HEWN_INVALID_ARGUMENT, "%s: it needs three different points or more", name);
+        return hewn_field_refuse(own->field, HEWN_INVALID_ARGUMENT, "%s: it needs three different points or more",
+                                 name);
     return hewn_field_add_node(own->field, &(hewn_node_data){.op = HEWN_OP_OUTLINE,
                                                              .operand = {own->last.id, HEWN_ID_X, HEWN_ID_Y},
                                                              .parameter = {own->size}});
@@ -136,7 +138,8 @@ static void chain_along(chain *own, unsigned degree, const double *controls, dou
     double p[8] = {own->at[0], own->at[1]}, bend = 0;
     memcpy(p + 2, controls, 2 * degree * sizeof *p);
     for (unsigned k = 0; k + 2 <= degree; k++)
-        bend = fmax(bend, hypot(p[2 * k] - 2 * p[2 * k + 2] + p[2 * k + 4], p[2 * k + 1] - 2 * p[2 * k + 3] + p[2 * k + 5]));
+        bend = fmax(bend,
+                    hypot(p[2 * k] - 2 * p[2 * k + 2] + p[2 * k + 4], p[2 * k + 1] - 2 * p[2 * k + 3] + p[2 * k + 5]));
     double chords = fmin(fmax(ceil(sqrt(bend * degree * (degree - 1) / (8 * off))), 1), 256);
     for (double i = 1; i < chords; i++) {
         double t = i / chords, level[8]; /* de Casteljau */
@@ -170,7 +173,8 @@ hewn_node hewn_outline(hewn_field *f, const hewn_curve *curves, size_t count)
     return chain_closed(&own, "outline");
 }
 
-/* --- into space ---------------------------------------------------------------------------------------------------- */
+/* --- into space ----------------------------------------------------------------------------------------------------
+ */
 
 hewn_node hewn_extrude(hewn_field *f, hewn_node shape, double height)
 {
@@ -200,7 +204,8 @@ hewn_node hewn_loft(hewn_field *f, hewn_node bottom, hewn_node top, double heigh
     if (!all_above_0(f, "loft", 1, &height))
         return HEWN_NODE_NONE;
     hewn_node part = clamped(f, plus(f, times(f, hewn_z(f), 1 / height), 0.5), 0, 1);
-    hewn_node out = corner(f, hewn_morph(f, bottom, top, part), plus(f, hewn_abs(f, hewn_z(f)), -0.5 * height));
+    hewn_node mix = hewn_add(f, bottom, hewn_mul(f, part, hewn_sub(f, top, bottom)));
+    hewn_node out = corner(f, mix, plus(f, hewn_abs(f, hewn_z(f)), -0.5 * height));
     if (!hewn_field_known_box(f, bottom, &box) || !hewn_field_known_box(f, top, &other))
         return out;
     for (int i = 0; i < 2; i++) {

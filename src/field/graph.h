@@ -62,8 +62,8 @@
     op(BLEND_EXPONENTIAL, blend_exponential, 2, 1) /* k */
 /* clang-format on */
 
-/* An outline is a chain: an edge for each side of a polygon, from the constant HEWN_OUTLINE_START on, each taking the one
- * before it, x and y; then the outline, which takes the last edge, x and y. An edge's value is the square of the
+/* An outline is a chain: an edge for each side of a polygon, from the constant HEWN_OUTLINE_START on, each taking the
+ * one before it, x and y; then the outline, which takes the last edge, x and y. An edge's value is the square of the
  * distance from the nearest edge so far, below 0 where a ray along x has crossed an odd number of them. That jumps, so
  * in the other flavours links carry what the outline needs instead: intervals the value in the middle of the box twice,
  * gradients the direction away from the nearest edge. Only the outline is a field like others; no builder hands out an

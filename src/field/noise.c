@@ -53,7 +53,8 @@ static uint32_t hash(const int32_t *cell, int dx, int dy, int dz, uint32_t seed)
     return h ^ h >> 16;
 }
 
-/* --- corners of a cube --------------------------------------------------------------------------------------------- */
+/* --- corners of a cube ---------------------------------------------------------------------------------------------
+ */
 
 /* One of the twelve directions to the edges of a cube. */
 static void direction(uint32_t h, double out[3])
@@ -106,7 +107,8 @@ static void between_corners(const hewn_node_data *node, const place *p, double o
         out[i] *= GRADIENT_SCALE;
 }
 
-/* --- simplex ------------------------------------------------------------------------------------------------------- */
+/* --- simplex -------------------------------------------------------------------------------------------------------
+ */
 
 static void simplex(const hewn_node_data *node, const double *in, double out[4])
 {
@@ -119,7 +121,8 @@ static void simplex(const hewn_node_data *node, const double *in, double out[4])
     for (int i = 0; i < 3; i++)
         d[i] = at[i] - cell[i] + ((double)cell[0] + cell[1] + cell[2]) / 6;
     /* From the cube's first corner to its last, along the largest coordinate first. */
-    const int later[3] = {(d[1] > d[0]) + (d[2] > d[0]), (d[0] >= d[1]) + (d[2] > d[1]), (d[0] >= d[2]) + (d[1] >= d[2])};
+    const int later[3] = {(d[1] > d[0]) + (d[2] > d[0]), (d[0] >= d[1]) + (d[2] > d[1]),
+                          (d[0] >= d[2]) + (d[1] >= d[2])};
     memset(out, 0, 4 * sizeof *out);
     for (int c = 0; c < 4; c++) {
         double g[3], e[3], rest = 0.5, dot = 0;
@@ -139,7 +142,8 @@ static void simplex(const hewn_node_data *node, const double *in, double out[4])
     }
 }
 
-/* --- cellular ------------------------------------------------------------------------------------------------------ */
+/* --- cellular ------------------------------------------------------------------------------------------------------
+ */
 
 /* The square of the distance to the nearest of one point a cell, at most 1: nearer ones are all in the cells around. */
 static void cellular(const place *p, double out[4])
@@ -162,7 +166,8 @@ static void cellular(const place *p, double out[4])
     }
 }
 
-/* --- all ----------------------------------------------------------------------------------------------------------- */
+/* --- all -----------------------------------------------------------------------------------------------------------
+ */
 
 void hewn_noise_slopes(const hewn_node_data *node, const double in[3], double out[4])
 {
@@ -200,7 +205,8 @@ hewn_interval hewn_noise_interval(const hewn_node_data *node, const hewn_interva
     if (is_cellular) {
         double root = sqrt(value), reach = sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
         double least = fmax(root - reach, 0), most = root + reach;
-        return (hewn_interval){fmax(hewn_lower(least * least, error), lo), fmin(hewn_upper(most * most, error), 1), nan};
+        return (hewn_interval){fmax(hewn_lower(least * least, error), lo), fmin(hewn_upper(most * most, error), 1),
+                               nan};
     }
     double slope = node->op == HEWN_OP_NOISE_VALUE      ? VALUE_SLOPE
                    : node->op == HEWN_OP_NOISE_GRADIENT ? GRADIENT_SLOPE

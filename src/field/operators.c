@@ -24,7 +24,8 @@ static bool size_is_fine(hewn_field *f, double size, unsigned steps)
     return all_above_0(f, "chamfer, round and stairs", 1, &size);
 }
 
-/* --- chamfer: a plane across the corner, `size` away from it along both ---------------------------------------------- */
+/* --- chamfer: a plane across the corner, `size` away from it along both ----------------------------------------------
+ */
 
 static hewn_node chamfer(hewn_field *f, hewn_node a, hewn_node b, double size, unsigned steps)
 {
@@ -48,7 +49,8 @@ hewn_node hewn_chamfer_difference(hewn_field *f, hewn_node a, hewn_node b, doubl
     return hewn_chamfer_intersection(f, a, hewn_neg(f, b), size);
 }
 
-/* --- round: a quarter of a circle that touches both ----------------------------------------------------------------- */
+/* --- round: a quarter of a circle that touches both -----------------------------------------------------------------
+ */
 
 static hewn_node rounding(hewn_field *f, hewn_node a, hewn_node b, double size, unsigned steps)
 {
@@ -72,7 +74,8 @@ hewn_node hewn_round_difference(hewn_field *f, hewn_node a, hewn_node b, double 
     return hewn_round_intersection(f, a, hewn_neg(f, b), size);
 }
 
-/* --- stairs: treads of size / steps between the two ------------------------------------------------------------------ */
+/* --- stairs: treads of size / steps between the two ------------------------------------------------------------------
+ */
 
 static hewn_node zigzag(hewn_field *f, hewn_node a, double period)
 {
@@ -103,7 +106,8 @@ hewn_node hewn_stairs_difference(hewn_field *f, hewn_node a, hewn_node b, double
     return hewn_stairs_intersection(f, a, hewn_neg(f, b), size, steps);
 }
 
-/* --- one shape ------------------------------------------------------------------------------------------------------ */
+/* --- one shape ------------------------------------------------------------------------------------------------------
+ */
 
 hewn_node hewn_shell(hewn_field *f, hewn_node shape, double thickness)
 {
@@ -124,7 +128,19 @@ hewn_node hewn_displace(hewn_field *f, hewn_node shape, hewn_node by)
     return hewn_add(f, shape, by);
 }
 
+/* What is inside a mix by a part from 0 to 1 is inside one of the two. */
 hewn_node hewn_morph(hewn_field *f, hewn_node a, hewn_node b, hewn_node part)
 {
-    return hewn_add(f, a, hewn_mul(f, part, hewn_sub(f, b, a)));
+    static const hewn_box space = {{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
+    hewn_node out = hewn_add(f, a, hewn_mul(f, part, hewn_sub(f, b, a)));
+    hewn_interval parts;
+    hewn_box box, other;
+    if (hewn_node_is_none(out) || hewn_field_bound(f, part, &space, &parts, NULL) != HEWN_OK || !(parts.lo >= 0) ||
+        !(parts.hi <= 1) || !hewn_field_known_box(f, a, &box) || !hewn_field_known_box(f, b, &other))
+        return out;
+    for (int i = 0; i < 3; i++) {
+        box.lo[i] = fmin(box.lo[i], other.lo[i]);
+        box.hi[i] = fmax(box.hi[i], other.hi[i]);
+    }
+    return bounded(f, out, &box);
 }

@@ -2,7 +2,8 @@
  * steep it is at most, so that the field is 1-Lipschitz: its value is never more than the distance. */
 #include "field/compose.h"
 
-/* --- surfaces ------------------------------------------------------------------------------------------------------- */
+/* --- surfaces -------------------------------------------------------------------------------------------------------
+ */
 
 /* Sines and cosines of the three coordinates and of their doubles. */
 typedef struct waves {
@@ -51,8 +52,8 @@ static hewn_node surface(const waves *w, const char *name, hewn_node sum, double
                          double thickness)
 {
     if (!(thickness >= 0) || !isfinite(thickness))
-        return hewn_field_refuse(w->f, HEWN_INVALID_ARGUMENT, "%s: the thickness %g must be finite and not below 0", name,
-                                 thickness);
+        return hewn_field_refuse(w->f, HEWN_INVALID_ARGUMENT, "%s: the thickness %g must be finite and not below 0",
+                                 name, thickness);
     hewn_node out = times(w->f, sum, period / (2 * acos(-1) * steepest));
     return thickness > 0 ? hewn_shell(w->f, out, thickness) : out;
 }
@@ -127,7 +128,8 @@ hewn_node hewn_fischer_koch_s(hewn_field *f, double period, double thickness)
     return surface(&w, "fischer_koch_s", ring_of_three(&w, w.cc, w.s, w.c), 2.456, period, thickness);
 }
 
-/* --- noise ---------------------------------------------------------------------------------------------------------- */
+/* --- noise ----------------------------------------------------------------------------------------------------------
+ */
 
 hewn_node hewn_noise(hewn_field *f, hewn_noise_kind kind, double size, uint32_t seed)
 {

@@ -87,8 +87,8 @@ static void add_question(rule *out, question asked)
     out->ask[out->count++] = asked;
 }
 
-/* Of a sum at or below a level each part is below what the least of the rest leaves (and so for above). `factor` is what
- * each part is multiplied by. */
+/* Of a sum at or below a level each part is below what the least of the rest leaves (and so for above). `factor` is
+ * what each part is multiplied by. */
 static rule parts_rule(const graph_view *view, const hewn_step *step, int count, const double *factor, double last,
                        bool above, double level)
 {

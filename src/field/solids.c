@@ -38,7 +38,8 @@ hewn_node hewn_ellipsoid(hewn_field *f, double x, double y, double z)
     return hewn_stretch(f, hewn_sphere(f, 1), x, y, z);
 }
 
-/* The least distance to balls in between, whose radii change evenly: found without cases, as the best of them is known. */
+/* The least distance to balls in between, whose radii change evenly: found without cases, as the best of them is known.
+ */
 hewn_node hewn_round_cone(hewn_field *f, double bottom, double top, double height)
 {
     if (!all_above_0(f, "round_cone", 3, (const double[3]){bottom, top, height}))
@@ -46,8 +47,8 @@ hewn_node hewn_round_cone(hewn_field *f, double bottom, double top, double heigh
     double lean = (bottom - top) / height;
     if (fabs(lean) >= 1)
         return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT,
-                                 "round_cone: with radii %g and %g and the height %g one ball lies in the other", bottom,
-                                 top, height);
+                                 "round_cone: with radii %g and %g and the height %g one ball lies in the other",
+                                 bottom, top, height);
     hewn_node r = length_of_two(f, hewn_x(f), hewn_z(f)), y = plus(f, hewn_y(f), 0.5 * height);
     hewn_node best = hewn_sub(f, y, times(f, r, lean / sqrt(1 - lean * lean)));
     best = clamped(f, times(f, best, 1 / height), 0, 1);
@@ -69,7 +70,8 @@ hewn_node hewn_link(hewn_field *f, double length, double major, double minor)
     return bounded_by(f, link, major + minor, 0.5 * length + major + minor, minor);
 }
 
-/* --- flat faces ---------------------------------------------------------------------------------------------------- */
+/* --- flat faces ----------------------------------------------------------------------------------------------------
+ */
 
 /* The greatest of planes at this distance, whose normals are given for the octant where all three coordinates are
  * positive. */
@@ -80,8 +82,8 @@ static hewn_node planes_of_octants(hewn_field *f, const double (*normals)[3], in
     for (int i = 0; i < count; i++) {
         const double *n = normals[i];
         double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        hewn_node face =
-            affine(f, axis[0], axis[1], axis[2], (const double[4]){n[0] / length, n[1] / length, n[2] / length, -inner});
+        hewn_node face = affine(f, axis[0], axis[1], axis[2],
+                                (const double[4]){n[0] / length, n[1] / length, n[2] / length, -inner});
         out = i == 0 ? face : hewn_max(f, out, face);
     }
     return hewn_max(f, out, hewn_sphere(f, radius * (1 + ROOM)));
@@ -101,7 +103,8 @@ hewn_node hewn_octahedron(hewn_field *f, double radius)
 
 hewn_node hewn_icosahedron(hewn_field *f, double radius)
 {
-    static const double normals[4][3] = {{1, 1, 1}, {0, 1 / GOLDEN, GOLDEN}, {GOLDEN, 0, 1 / GOLDEN}, {1 / GOLDEN, GOLDEN, 0}};
+    static const double normals[4][3] = {
+        {1, 1, 1}, {0, 1 / GOLDEN, GOLDEN}, {GOLDEN, 0, 1 / GOLDEN}, {1 / GOLDEN, GOLDEN, 0}};
     if (!all_above_0(f, "icosahedron", 1, &radius))
         return HEWN_NODE_NONE;
     return planes_of_octants(f, normals, 4, INNER * radius, radius);
@@ -138,12 +141,14 @@ hewn_node hewn_pyramid(hewn_field *f, double width, double height)
         return HEWN_NODE_NONE;
     double half = 0.5 * width, slant = sqrt(height * height + half * half);
     hewn_node out = hewn_max(f, hewn_abs(f, hewn_x(f)), hewn_abs(f, hewn_z(f)));
-    hewn_node side = hewn_add(f, times(f, out, height / slant), times(f, plus(f, hewn_y(f), -0.5 * height), half / slant));
+    hewn_node side =
+        hewn_add(f, times(f, out, height / slant), times(f, plus(f, hewn_y(f), -0.5 * height), half / slant));
     hewn_node floor = plus(f, hewn_neg(f, hewn_y(f)), -0.5 * height);
     return bounded_by(f, hewn_max(f, side, floor), half, 0.5 * height, half);
 }
 
-/* --- along curves -------------------------------------------------------------------------------------------------- */
+/* --- along curves --------------------------------------------------------------------------------------------------
+ */
 
 static hewn_node capsule_between(hewn_field *f, const double *a, const double *b, double radius)
 {
@@ -199,9 +204,9 @@ hewn_node hewn_bezier_tube(hewn_field *f, const double *points, size_t count, do
     if (!all_above_0(f, "bezier_tube", 1, &radius))
         return HEWN_NODE_NONE;
     if (!points || count < 4 || count % 3 != 1)
-        return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT,
-                                 "bezier_tube: it needs 4, 7, 10 ... points (ends and two controls between them), not %zu",
-                                 count);
+        return hewn_field_refuse(
+            f, HEWN_INVALID_ARGUMENT,
+            "bezier_tube: it needs 4, 7, 10 ... points (ends and two controls between them), not %zu", count);
     for (size_t i = 0; i < 3 * count; i++)
         if (!isfinite(points[i]))
             return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "bezier_tube: point %zu is not finite", i / 3 + 1);
@@ -220,9 +225,9 @@ hewn_node hewn_bezier_tube(hewn_field *f, const double *points, size_t count, do
     return out;
 }
 
-/* The point is turned back by its height, so that the wire's middle line becomes one point (radius, 0) of a plane. A step
- * along the circle there is one across the wire times the sine of the wire's slope; no angle is taken, whose jump would
- * leave bounds open. The ends are cut level. */
+/* The point is turned back by its height, so that the wire's middle line becomes one point (radius, 0) of a plane. A
+ * step along the circle there is one across the wire times the sine of the wire's slope; no angle is taken, whose jump
+ * would leave bounds open. The ends are cut level. */
 hewn_node hewn_helix(hewn_field *f, double radius, double pitch, double height, double wire)
 {
     if (!all_above_0(f, "helix", 4, (const double[4]){radius, pitch, height, wire}))
@@ -230,8 +235,10 @@ hewn_node hewn_helix(hewn_field *f, double radius, double pitch, double height, 
     const double turn = 2 * acos(-1);
     double around = turn * radius, sine = pitch / sqrt(pitch * pitch + around * around);
     if (2 * wire >= pitch * around / sqrt(pitch * pitch + around * around) || wire >= radius)
-        return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "helix: its turns meet: the wire's radius %g is too large for "
-                                 "the radius %g and the pitch %g", wire, radius, pitch);
+        return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT,
+                                 "helix: its turns meet: the wire's radius %g is too large for "
+                                 "the radius %g and the pitch %g",
+                                 wire, radius, pitch);
     hewn_node x = hewn_x(f), z = hewn_z(f), r = length_of_two(f, x, z), angle = times(f, hewn_y(f), turn / pitch);
     hewn_node along = hewn_add(f, hewn_mul(f, x, hewn_cos(f, angle)), hewn_mul(f, z, hewn_sin(f, angle)));
     hewn_node gap = times(f, at_least(f, hewn_sub(f, r, along), 0), 2 * radius * sine * sine);

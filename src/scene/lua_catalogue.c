@@ -1,5 +1,6 @@
-/* The functions of the catalogue: arguments are read as it says, so that each message names the argument. What is written
- * in more than one way (src/field/catalogue.h: `call`) is read by hand in lua_shapes.c, lua_combining.c and lua_moving.c. */
+/* The functions of the catalogue: arguments are read as it says, so that each message names the argument. What is
+ * written in more than one way (src/field/catalogue.h: `call`) is read by hand in lua_shapes.c, lua_combining.c and
+ * lua_moving.c. */
 #include <math.h>
 #include <string.h>
 
@@ -39,7 +40,8 @@ static double word(lua_State *L, int argument, const char *name, const char *con
     return hewn_lua_argument_error(L, argument, name, what);
 }
 
-/* --- lists --------------------------------------------------------------------------------------------------------- */
+/* --- lists ---------------------------------------------------------------------------------------------------------
+ */
 
 /* Item `i` of the list at `argument` as numbers, `most` at most; returns how many it has. */
 static int numbers_of(lua_State *L, int argument, const char *name, lua_Integer i, int most, double *out)
@@ -74,7 +76,8 @@ static lua_Integer list_length(lua_State *L, int argument, const char *name, con
 /* The memory is Lua's, and lives as long as the call. */
 static void read_points(lua_State *L, int argument, const char *name, int dimensions, hewn_argument *out)
 {
-    lua_Integer count = list_length(L, argument, name, dimensions == 2 ? "a list of points {x, y}" : "a list of points {x, y, z}");
+    lua_Integer count =
+        list_length(L, argument, name, dimensions == 2 ? "a list of points {x, y}" : "a list of points {x, y, z}");
     double *points = lua_newuserdatauv(L, ((size_t)count * (size_t)dimensions + 1) * sizeof *points, 0);
     for (lua_Integer i = 0; i < count; i++)
         if (numbers_of(L, argument, name, i + 1, dimensions, points + i * dimensions) != dimensions)
@@ -97,7 +100,8 @@ static void read_curves(lua_State *L, int argument, const char *name, hewn_argum
     out->count = (size_t)count;
 }
 
-/* --- all ----------------------------------------------------------------------------------------------------------- */
+/* --- all -----------------------------------------------------------------------------------------------------------
+ */
 
 static void read_argument(lua_State *L, int argument, const hewn_function *function, const hewn_argument_info *info,
                           hewn_argument *out)
