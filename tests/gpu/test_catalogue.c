@@ -1,5 +1,5 @@
-/* Each function of the catalogue on the GPU: its values are the oracle's, its intervals contain its values; and noise has
- * the very bits that a serial twin in floats has. */
+/* Each function of the catalogue on the GPU: its values are the oracle's, its intervals contain its values; and noise
+ * has the very bits that a serial twin in floats has. */
 #include "../oracle/noise.h"
 #include "../unit/catalogue_support.h"
 #include "gpu_test.h"
@@ -66,7 +66,8 @@ static void check_intervals(fixture *state, const hewn_code *code, const char *n
     for (size_t i = 0; i < (size_t)BOXES * IN_A_BOX; i++) {
         const float *bound = bounds + 2 * (i / IN_A_BOX);
         if (!(bound[0] <= values[i] && values[i] <= bound[1]))
-            fail_msg("%s: [%.9g, %.9g] does not hold %.9g", name, (double)bound[0], (double)bound[1], (double)values[i]);
+            fail_msg("%s: [%.9g, %.9g] does not hold %.9g", name, (double)bound[0], (double)bound[1],
+                     (double)values[i]);
         useful += isfinite(bound[0]) && isfinite(bound[1]);
     }
     if (useful < (size_t)BOXES * IN_A_BOX / 2)

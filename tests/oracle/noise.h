@@ -1,5 +1,5 @@
-/* Noise in floats, written on its own after src/field/noise.c's description: sums and products in the order of the shader,
- * so that bits must agree. */
+/* Noise in floats, written on its own after src/field/noise.c's description: sums and products in the order of the
+ * shader, so that bits must agree. */
 #ifndef HEWN_TESTS_ORACLE_NOISE_H
 #define HEWN_TESTS_ORACLE_NOISE_H
 
