@@ -53,12 +53,19 @@ static inline hewn_node corner(hewn_field *f, hewn_node a, hewn_node b)
     return hewn_max(f, most, hewn_add(f, outside, at_most(f, most, 0)));
 }
 
+/* The middle, or 0 where only rounding keeps it from there: then there is nothing to add, whatever the numbers are. */
+static inline double middle_of(double low, double high)
+{
+    double middle = 0.5 * (low + high);
+    return fabs(middle) < 0x1p-40 * (high - low) ? 0 : middle;
+}
+
 static inline hewn_node box_around(hewn_field *f, const hewn_box *box)
 {
     hewn_node_data data = {.op = HEWN_OP_BOX};
     hewn_node axis[3] = {hewn_x(f), hewn_y(f), hewn_z(f)};
     for (int i = 0; i < 3; i++) {
-        double row[4] = {0, 0, 0, -0.5 * (box->lo[i] + box->hi[i])};
+        double row[4] = {0, 0, 0, -middle_of(box->lo[i], box->hi[i])};
         row[i] = 1;
         data.operand[i] = affine(f, axis[0], axis[1], axis[2], row).id;
         data.parameter[i] = 0.5 * (box->hi[i] - box->lo[i]);
@@ -96,7 +103,7 @@ static inline hewn_node bounded_by_cylinder(hewn_field *f, hewn_node shape, doub
     if (!(radius > 0) || !(high > low) || !isfinite(radius + high - low))
         return shape;
     hewn_node around = hewn_cylinder(f, radius * (1 + ROOM), (high - low) * (1 + 2 * ROOM));
-    return hewn_max(f, shape, hewn_translate(f, around, 0, 0.5 * (low + high), 0));
+    return hewn_max(f, shape, hewn_translate(f, around, 0, middle_of(low, high), 0));
 }
 
 /* Whether all are finite and above 0; else the field remembers that `name` is refused. */

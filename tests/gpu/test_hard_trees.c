@@ -91,7 +91,7 @@ static hewn_node combine(grower *own, hewn_node a, hewn_node b)
 
 static hewn_node grow(grower *own, uint32_t leaves)
 {
-    enum { MOST = 200 };
+    enum { MOST = 160 };
     hewn_node made;
     if (leaves <= 1) {
         made = grow_leaf(own);
@@ -113,7 +113,7 @@ static hewn_node make_tree(hewn_field *field, uint32_t build, uint32_t numbers)
 {
     uint64_t streams[2] = {build * 0x9e3779b97f4a7c15u + 1, numbers * 0xd1b54a32d192ed03u + 1};
     grower own = {field, &streams[0], &streams[1]};
-    uint32_t leaves = 1 + choice(&own, 6);
+    uint32_t leaves = 1 + choice(&own, 5);
     hewn_node root = grow(&own, leaves);
     GPU_TEST_TRY(hewn_field_status(field, &error));
     return root;
@@ -199,7 +199,7 @@ static void hard_trees_keep_their_cells(void **state)
     (void)state;
     unsigned messages;
     hewn_device *device = gpu_test_open(&messages);
-    uint32_t builds = gpu_test_long() ? 200 : 8, sets = gpu_test_long() ? 50 : 3;
+    uint32_t builds = gpu_test_long() ? 200 : 5, sets = gpu_test_long() ? 50 : 1;
     const char *from = getenv("HEWN_SEED");
     uint32_t first = from ? (uint32_t)strtoul(from, NULL, 10) : 1;
     tally sum = {0};
