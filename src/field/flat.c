@@ -192,7 +192,8 @@ hewn_node hewn_extrude(hewn_field *f, hewn_node shape, double height)
 hewn_node hewn_revolve(hewn_field *f, hewn_node shape)
 {
     hewn_box box;
-    hewn_node turned = hewn_remap(f, shape, length_of_two(f, hewn_x(f), hewn_z(f)), hewn_y(f), hewn_constant(f, 0));
+    hewn_node turned =
+        hewn_remap_revolved(f, shape, length_of_two(f, hewn_x(f), hewn_z(f)), hewn_y(f), hewn_constant(f, 0));
     return hewn_field_known_box(f, shape, &box) ? bounded_by_cylinder(f, turned, box.hi[0], box.lo[1], box.hi[1])
                                                 : turned;
 }

@@ -90,4 +90,7 @@ hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hew
  * nothing for lack of memory. */
 bool hewn_field_known_box(const hewn_field *field, hewn_node node, hewn_box *out);
 
+/* hewn_remap without the edges of outlines that lie on x = 0: what turns about that axis has no surface there. */
+hewn_node hewn_remap_revolved(hewn_field *field, hewn_node shape, hewn_node x, hewn_node y, hewn_node z);
+
 #endif

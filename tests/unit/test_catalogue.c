@@ -316,6 +316,23 @@ static void polygons_are_exact(void **state)
     }
 }
 
+/* A profile that is closed along the axis makes a solid without a surface on it. */
+static void revolved_outlines_have_no_axis(void **state)
+{
+    (void)state;
+    random_state random = {36};
+    hewn_field *f = new_field();
+    hewn_node profile = hewn_polygon(f, (const double[8]){0, -1, 0.8, -1, 0.8, 1, 0, 1}, 4);
+    hewn_node turned = hewn_revolve(f, profile), cylinder = hewn_cylinder(f, 0.8, 2);
+    assert_true(fabs(value_at(f, turned, 0, 0.1, 0) + 0.8) < 1e-12);
+    for (int i = 0; i < 1000; i++) {
+        double x = random_between(&random, -2, 2), y = random_between(&random, -2, 2),
+               z = random_between(&random, -2, 2);
+        assert_true(fabs(value_at(f, turned, x, y, z) - value_at(f, cylinder, x, y, z)) < 1e-12);
+    }
+    hewn_field_destroy(&f);
+}
+
 /* On each side of a convex polygon the gradient points outwards, also where the value is 0 to the last bit. */
 static void outlines_face_outwards(void **state)
 {
@@ -409,6 +426,7 @@ int main(void)
         cmocka_unit_test(boxes_are_found),
         cmocka_unit_test(polygons_are_exact),
         cmocka_unit_test(outlines_face_outwards),
+        cmocka_unit_test(revolved_outlines_have_no_axis),
         cmocka_unit_test(bad_arguments_are_refused),
     };
     return cmocka_run_group_tests_name("catalogue", tests, NULL, NULL);
