@@ -13,4 +13,4 @@ local half = smooth_union(smooth_union(legs, feet, 0.15), ear, 0.1):symmetric("z
 local all = smooth_union(smooth_union(body, neck, 0.3), smooth_union(head, snout, 0.2), 0.25)
 all = smooth_union(smooth_union(all, tail, 0.2), half, 0.18)
 all = all:displace(0.02 * noise(0.15, 3, "simplex"))
-return all & ~eye:offset(0.03):symmetric("z") | eye:symmetric("z")
+return all | eye:symmetric("z")

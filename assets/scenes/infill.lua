@@ -8,4 +8,4 @@ local skin = param("skin", 3, {min = 0.8, max = 6, help = "thickness of the skin
 local grip = smooth_union(ellipsoid(30, 22, 22), ellipsoid(18, 20, 20):move(28, 4, 0), 8)
 local inside = grip + skin
 local filled = (grip & ~inside) | (gyroid(cell, wall) & grip)
-return filled & ~box(80, 50, 50):move(0, 30, 25)
+return filled & ~box(80, 50, 50):move(0, 25, 20)

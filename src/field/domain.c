@@ -77,7 +77,7 @@ static hewn_node join_copies(hewn_field *f, hewn_node shape, size_t from, size_t
 
 static bool few_enough(hewn_field *f, const char *name, hewn_node shape, double copies)
 {
-    enum { NODES_MOST = 1 << 22 };
+    enum { NODES_MOST = 1 << 20 };
     if (copies < 1 || copies > HEWN_COPIES_MOST || copies * (double)hewn_field_size(f, shape) > NODES_MOST) {
         hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "%s: %.0f copies of the shape are too many, or too few", name,
                           copies);

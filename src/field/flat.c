@@ -46,6 +46,11 @@ static void chain_to(chain *own, double x, double y)
 {
     if (x == own->at[0] && y == own->at[1])
         return;
+    if (own->edges == HEWN_OUTLINE_MOST) {
+        hewn_field_refuse(own->field, HEWN_INVALID_ARGUMENT, "an outline has more than %d edges",
+                          (int)HEWN_OUTLINE_MOST);
+        own->last = HEWN_NODE_NONE;
+    }
     hewn_node_data link = {.op = HEWN_OP_EDGE,
                            .operand = {own->last.id, HEWN_ID_X, HEWN_ID_Y},
                            .parameter = {own->at[0], own->at[1], x, y}};

@@ -60,7 +60,7 @@ const char *hewn_op_complaint(hewn_op op, const double *p)
                                                                  : "its seed must be a whole number from 0 to 16777215";
     case HEWN_OP_EDGE: return p[0] != p[2] || p[1] != p[3] ? NULL : "its ends must not be one point";
     case HEWN_OP_OUTLINE:
-    case HEWN_OP_ZIGZAG: return all_positive(p, 1) ? NULL : "its size must be above 0";
+    case HEWN_OP_ZIGZAG:
     case HEWN_OP_BLEND_QUADRATIC:
     case HEWN_OP_BLEND_CUBIC:
     case HEWN_OP_BLEND_CIRCULAR:

@@ -164,8 +164,9 @@ hewn_node hewn_tube(hewn_field *f, const double *points, size_t count, double ra
 {
     if (!all_above_0(f, "tube", 1, &radius))
         return HEWN_NODE_NONE;
-    if (!points || count < 2)
-        return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "tube: it needs two points or more");
+    if (!points || count < 2 || count > HEWN_COPIES_MOST)
+        return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "tube: it has 2 to %d points, not %zu",
+                                 (int)HEWN_COPIES_MOST, count);
     hewn_node out = HEWN_NODE_NONE;
     for (size_t i = 0; i < 3 * count; i++)
         if (!isfinite(points[i]))
@@ -210,6 +211,12 @@ hewn_node hewn_bezier_tube(hewn_field *f, const double *points, size_t count, do
     for (size_t i = 0; i < 3 * count; i++)
         if (!isfinite(points[i]))
             return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "bezier_tube: point %zu is not finite", i / 3 + 1);
+    size_t all = 0;
+    for (size_t i = 0; i + 3 < count; i += 3)
+        all += chords_of(points + 3 * i, 0.01 * radius);
+    if (all > HEWN_COPIES_MOST)
+        return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "bezier_tube: it comes to %zu chords, more than %d", all,
+                                 (int)HEWN_COPIES_MOST);
     hewn_node out = HEWN_NODE_NONE;
     for (size_t i = 0; i + 3 < count; i += 3) {
         const double *p = points + 3 * i;

@@ -47,7 +47,7 @@ static tolerance bound_of(hewn_op op)
     case HEWN_OP_NOISE_GRADIENT:
     case HEWN_OP_NOISE_CELLULAR: return (tolerance){0, 24};
     case HEWN_OP_NOISE_SIMPLEX: return (tolerance){0, 100};
-    case HEWN_OP_ZIGZAG: return (tolerance){1, 4};
+    case HEWN_OP_ZIGZAG:
     case HEWN_OP_BLEND_QUADRATIC:
     case HEWN_OP_BLEND_CUBIC: return (tolerance){1, 4};
     case HEWN_OP_BLEND_CIRCULAR: return (tolerance){1, 10};

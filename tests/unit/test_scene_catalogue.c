@@ -121,7 +121,7 @@ static void messages_name_the_argument(void **state)
         {"polygon{{0, 0}, {1, 'a'}, {1, 2}}", "polygon: item 2 of the list: number 2 must be a finite number"},
         {"polygon{{0, 0}, {1, 0/0}, {1, 2}}", "polygon: item 2 of the list: number 2 must be a finite number"},
         {"outline{{0, 0}, {1, 0, 2}, {1, 2}}", "outline: item 2 of the list must have 2, 4 or 6 numbers"},
-        {"tube({{0, 0, 0}}, 1)", "tube: it needs two points or more"},
+        {"tube({{0, 0, 0}}, 1)", "tube: it has 2 to 65536 points, not 1"},
         {"tube({{0, 0, 0}, {1, 1}}, 1)", "tube: item 2 of the list must have 3 numbers"},
         {"x:mirror('w')", "mirror: 'w' is not \"x\", \"y\" or \"z\""},
         {"x:mirror(1)", "mirror: argument 1 must be \"x\", \"y\" or \"z\", not 1"},
