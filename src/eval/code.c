@@ -163,12 +163,21 @@ static hewn_result choose_blocks(hewn_code *code, hewn_error *error)
  * devices is the sum of all its kinds and of reading it (docs/performance.md). */
 enum { LISTED_FROM = 12, READING = 60, A_SLOT = 6 };
 
+/* More edges of outlines than this are walked over whatever else there is: each is the same code with other numbers, and
+ * written out one by one they take longer to compile than lists take to run. */
+enum { LISTED_EDGES = 64 };
+
 static bool lists_pay(const hewn_code *code)
 {
     const hewn_instruction_set *set = &code->instructions.set;
     uint64_t all = 0, one = READING + (uint64_t)A_SLOT * set->slots;
-    for (size_t i = 0; i < code->listing.count; i++)
+    size_t edges = 0;
+    for (size_t i = 0; i < code->listing.count; i++) {
         all += hewn_listing_weight(&code->listing.steps[i]);
+        edges += code->listing.steps[i].op == HEWN_OP_EDGE;
+    }
+    if (edges > LISTED_EDGES)
+        return true;
     for (uint32_t i = 0; i < set->body_count; i++)
         one += set->bodies[i].weight;
     for (uint32_t i = 0; i < set->combination_count; i++)

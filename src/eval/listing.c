@@ -59,6 +59,16 @@ static void put_cone(hewn_listing *listing, hewn_code_step *step, const double *
     put(listing, step, 0.5 * (p[0] + p[1]));
 }
 
+/* With the reciprocal of the square of the edge's length. */
+static void put_edge(hewn_listing *listing, hewn_code_step *step, const double *p)
+{
+    for (int i = 0; i < 4; i++)
+        put(listing, step, p[i]);
+    double x = (double)rounded(p[2]) - (double)rounded(p[0]), y = (double)rounded(p[3]) - (double)rounded(p[1]);
+    double square = x * x + y * y;
+    put(listing, step, square > 0 ? fmin(1 / square, 1e29) : 0);
+}
+
 static void put_parameters(hewn_listing *listing, hewn_code_step *step, const hewn_node_data *node)
 {
     const double *p = node->parameter;
@@ -73,6 +83,8 @@ static void put_parameters(hewn_listing *listing, hewn_code_step *step, const he
     case HEWN_OP_AFFINE: put_affine(listing, step, p, p[3]); break;
     case HEWN_OP_PLANE: put_affine(listing, step, p, -p[3]); break;
     case HEWN_OP_CONE: put_cone(listing, step, p); break;
+    case HEWN_OP_EDGE: put_edge(listing, step, p); break;
+    case HEWN_OP_ZIGZAG:
     case HEWN_OP_BLEND_QUADRATIC:
     case HEWN_OP_BLEND_CUBIC:
     case HEWN_OP_BLEND_CIRCULAR:
@@ -176,6 +188,13 @@ uint32_t hewn_listing_weight(const hewn_code_step *step)
     case HEWN_OP_CYLINDER: return 22;
     case HEWN_OP_CONE:
     case HEWN_OP_BLEND_EXPONENTIAL: return 70;
+    case HEWN_OP_NOISE_VALUE: return 150;
+    case HEWN_OP_NOISE_GRADIENT:
+    case HEWN_OP_NOISE_SIMPLEX: return 220;
+    case HEWN_OP_NOISE_CELLULAR: return 700;
+    case HEWN_OP_EDGE: return 24;
+    case HEWN_OP_OUTLINE:
+    case HEWN_OP_ZIGZAG: return 6;
     case HEWN_OP_BLEND_QUADRATIC:
     case HEWN_OP_BLEND_CUBIC:
     case HEWN_OP_BLEND_CIRCULAR: return 16;

@@ -5,9 +5,9 @@
 #include "field/internal.h"
 #include "field/interval.h"
 
-static hewn_interval unary(hewn_op op, hewn_interval a)
+static hewn_interval unary(const hewn_node_data *node, hewn_interval a)
 {
-    switch (op) {
+    switch (node->op) {
     case HEWN_OP_NEG: return hewn_interval_neg(a);
     case HEWN_OP_ABS: return hewn_interval_abs(a);
     case HEWN_OP_SQRT: return hewn_interval_sqrt(a);
@@ -24,6 +24,7 @@ static hewn_interval unary(hewn_op op, hewn_interval a)
     case HEWN_OP_CEIL: return hewn_interval_ceil(a);
     case HEWN_OP_ROUND: return hewn_interval_round(a);
     case HEWN_OP_NOT: return hewn_interval_not(a);
+    case HEWN_OP_ZIGZAG: return hewn_interval_zigzag(a, node->parameter[0]);
     default: return hewn_interval_all();
     }
 }
@@ -50,7 +51,7 @@ hewn_interval hewn_op_bound(const hewn_node_data *node, const hewn_interval in[3
 {
     switch (hewn_op_infos[node->op].operands) {
     case 0: return hewn_interval_of(node->parameter[0]);
-    case 1: return unary(node->op, in[0]);
+    case 1: return unary(node, in[0]);
     case 2: return binary(node, in[0], in[1]);
     default: return hewn_interval_shape(node, in);
     }
