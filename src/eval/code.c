@@ -348,7 +348,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
                                "#extension GL_EXT_control_flow_attributes : require\n"
                                "#extension GL_KHR_shader_subgroup_basic : enable\n"
                                "#extension GL_KHR_shader_subgroup_vote : enable\n"
-                               "#extension GL_KHR_shader_subgroup_ballot : enable\n");
+                               "#extension GL_KHR_shader_subgroup_shuffle : enable\n");
     else if (code->place == HEWN_PLACE_ADDRESS)
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n");
     hewn_text_append(text, desc->head + version);

@@ -40,7 +40,7 @@ static void write_word(const walk *own, uint32_t i)
 {
     uint32_t n = own->how->together;
     if (n)
-        hewn_text_print(own->text, "subgroupBroadcast(w%u,%uu)", i / n, i % n);
+        hewn_text_print(own->text, "subgroupShuffle(w%u,%uu)", i / n, i % n);
     else
         hewn_text_print(own->text, "code.at[at+%uu]", i);
 }
