@@ -12,7 +12,7 @@ const float NEAREST = 1.25 / 4096.0;
 const float NEAR_ENOUGH = 1.0e-5;
 const float CORRECTED = 1.0e-3; /* of a cell: a place that is farther off than this lies on no surface */
 const uint MOST_TRIALS = 24u;
-const uint A_BRICK = 16u; /* invocations */
+const uint A_BRICK = 8u; /* invocations */
 
 struct Edge {
     vec3 start;
@@ -81,7 +81,7 @@ void next_guess(inout Search s, uint trial)
     s.guess = s.settled ? s.guess : guess;
 }
 
-void narrow(inout Search s, float value)
+void take_value(inout Search s, float value)
 {
     s.settled = s.settled || abs(value) <= s.enough || s.b - s.a < 2.0e-6;
     bool low = (value < 0.0) == s.start_inside, on = !s.settled;
@@ -109,7 +109,7 @@ void solve(vec4 at_start, vec4 at_end, uint count)
         vec4 values = values_at(at);
         settled = true;
         for (uint k = 0u; k < 4u; k++) {
-            narrow(searches[k], values[k]);
+            take_value(searches[k], values[k]);
             settled = settled && searches[k].settled;
         }
     }
@@ -148,6 +148,17 @@ void write_solved(uint vertex, const Edge edge, vec3 at, vec4 gradient, float at
         atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
 }
 
+/* Leaves out of the list what is needed on none of these edges. */
+void narrow(const vec3 starts[4], const vec3 ends[4], uint count)
+{
+    vec3 lo = min(starts[0], ends[0]), hi = max(starts[0], ends[0]);
+    for (uint k = 1u; k < 4u; k++) {
+        lo = k < count ? min(lo, min(starts[k], ends[k])) : lo;
+        hi = k < count ? max(hi, max(starts[k], ends[k])) : hi;
+    }
+    field_narrow(vec2(lo.x, hi.x), vec2(lo.y, hi.y), vec2(lo.z, hi.z), count > 0u);
+}
+
 void solve_four(uint first, uint end, uvec3 base)
 {
     vec3 starts[4], ends[4], found[4];
@@ -157,6 +168,7 @@ void solve_four(uint first, uint end, uvec3 base)
         ends[k] = edges[k].start;
         ends[k][edges[k].axis] = edges[k].end;
     }
+    narrow(starts, ends, first < end ? min(end - first, 4u) : 0u);
     vec4 at_start = values_at(starts), at_end = values_at(ends);
     solve(at_start, at_end, first < end ? end - first : 0u);
     float least = push.dual != 0u ? 0.0 : NEAREST;
