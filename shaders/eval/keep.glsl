@@ -41,6 +41,17 @@ uint field_ask(inout Keeping state, uint slot)
 }
 
 /* Whether an instruction is kept, and its head then. Choice 1: only a matters; 2: only what its body gives. */
+#if FIELD_SLOTS == 1
+/* One value is made after the other, and only whether it is still needed has to be known. */
+bool field_keeps(inout Keeping state, uint head, uint choice, out uint made)
+{
+    bool copies = (head & 255u) == 0u, alone = choice == 2u;
+    bool keeps = state.used != 0u && choice != 1u && !(alone && copies);
+    made = alone ? (head & 0xFFF0F0FFu) | 0x000F0000u : head;
+    state.used = keeps && made >> 16 == 0xFFFFu ? 0u : state.used;
+    return keeps;
+}
+#else
 bool field_keeps(inout Keeping state, uint head, uint choice, out uint made)
 {
     uint out_slot = head >> 12 & 15u, number = field_number(state.map, out_slot);
@@ -73,3 +84,4 @@ bool field_keeps(inout Keeping state, uint head, uint choice, out uint made)
     made = body | how << 8 | number << 12 | from_a << 16 | from_b << 20 | from_c << 24 | from_d << 28;
     return true;
 }
+#endif

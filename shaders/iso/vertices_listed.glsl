@@ -156,7 +156,7 @@ void narrow(const vec3 starts[4], const vec3 ends[4], uint count)
         lo = k < count ? min(lo, min(starts[k], ends[k])) : lo;
         hi = k < count ? max(hi, max(starts[k], ends[k])) : hi;
     }
-    field_narrow(vec2(lo.x, hi.x), vec2(lo.y, hi.y), vec2(lo.z, hi.z), count > 0u);
+    field_narrow(vec2(lo.x, hi.x), vec2(lo.y, hi.y), vec2(lo.z, hi.z), count > 0u, 2u);
 }
 
 void solve_four(uint first, uint end, uvec3 base)

@@ -331,6 +331,11 @@ uint32_t hewn_code_instruction_count(const hewn_code *code)
     return code->instructions.count;
 }
 
+const uint32_t *hewn_code_whole_list(const hewn_code *code)
+{
+    return code->instructions.entries;
+}
+
 void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_buffer *ranges)
 {
     hewn_list_block *block = code->uniforms.mapped;
@@ -363,10 +368,11 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
         hewn_instruction_set_declare(&code->instructions.set, &how, text);
     } else {
         write_parameter_block(code, text);
-        hewn_text_append(text, "const uint FIELD_WHOLE = 0xFFFFFFFFu;\nvoid field_select(uint slot)\n{\n}\n");
+        hewn_text_append(text, "const uint FIELD_WHOLE = 0xFFFFFFFFu;\nvoid field_select(uint slot)\n{\n}\n"
+                               "void field_narrow(vec2 x, vec2 y, vec2 z, bool matters, uint least)\n{\n}\n");
     }
     hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_POINT, text);
-    bool narrows = how.together && (desc->flavours & HEWN_FLAVOUR_FOUR);
+    bool narrows = how.together && (desc->flavours & (HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_ROW));
     if (narrows || desc->flavours & (HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_CHOICES))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_INTERVAL, text);
     if (desc->flavours & (HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_FOUR))

@@ -29,7 +29,8 @@ struct hewn_code {
     hewn_listing listing;
     bool listed;
     hewn_walking walking;
-    hewn_instructions instructions; /* of listed code; `parameters` holds their words and from `entries_at` on the list */
+    hewn_instructions
+        instructions; /* of listed code; `parameters` holds their words and from `entries_at` on the list */
     uint64_t entries_at;
     hewn_number_place place;
     hewn_library library;

@@ -21,12 +21,12 @@ typedef struct walk {
 } walk;
 
 /* Instructions that are kept. */
-enum { KEPT = 64 };
+enum { KEPT = 128 };
 
 static const walk point_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 1};
 static const walk four_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 4, .repeated = true};
-static const walk word_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 32};
-static const walk interval_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .values = 1};
+static const walk word_walk = {.type = "float", .bools = "bool", .flavour = 0, .values = 32, .repeated = true};
+static const walk interval_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .values = 1, .repeated = true};
 static const walk choice_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .values = 4, .purpose = CHOOSES};
 static const walk narrow_walk = {
     .type = "vec2", .bools = "bvec2", .flavour = 1, .values = 1, .purpose = NARROWS, .repeated = true};
@@ -218,8 +218,7 @@ static void write_note(const walk *own)
     if (own->purpose == CHOOSES)
         hewn_text_print(own->text, "chosen%s|=(without_r?1u:without_a?2u:0u)<<2u*(made&15u);\n", place(own));
     else if (own->purpose == NARROWS)
-        hewn_text_append(own->text, "uvec2 bit=uvec2(at<32u?1u<<at:0u,at<32u?0u:1u<<(at&31u));\n"
-                                    "only_a|=without_r?bit:uvec2(0u);\nonly_r|=without_a?bit:uvec2(0u);\n");
+        hewn_text_append(own->text, "only_a|=uint(without_r)<<(at&31u);\nonly_r|=uint(without_a)<<(at&31u);\n");
 }
 
 /* One instruction: its head is `head`, its numbers begin at `from`. */
@@ -247,6 +246,18 @@ static void write_instruction(const walk *own, const char *each)
     }
 }
 
+/* Votes are taken by exchange with neighbours ever farther off. An invocation that nothing matters to agrees to all. */
+static void write_vote(const walk *own)
+{
+    hewn_text_append(own->text, "if(!matters)\nonly_a=only_r=~0u;\n");
+    for (uint32_t far = 1; far < own->how->together; far *= 2)
+        hewn_text_print(own->text,
+                        "only_a&=subgroupShuffle(only_a,gl_SubgroupInvocationID^%uu);\n"
+                        "only_r&=subgroupShuffle(only_r,gl_SubgroupInvocationID^%uu);\n",
+                        far, far);
+    hewn_text_append(own->text, "field_without_r[(at-1u)>>5]=only_a;\nfield_without_a[(at-1u)>>5]=only_r;\n");
+}
+
 /* A loop that subgroups leave together tests at its end: where llvmpipe leaves one at its beginning, it runs through
  * all that follows once more under an empty mask. Where invocations leave one by one it must test at its beginning,
  * though: what was computed before a test is not kept from the rounds that others still take. No list is empty. */
@@ -255,15 +266,22 @@ static void write_loop(const walk *own, const char *each)
     hewn_text *text = own->text;
     uint32_t words = own->set->words, n = own->how->together;
     if (own->purpose == NARROWS) {
-        hewn_text_print(text, "uint at=0u;\ndo{\nuint head=field_all[at],from=at*%uu;\n", words / n);
-        write_instruction(own, each);
-        hewn_text_append(text, "at++;\n}while(at<count);\n");
-    } else if (keeps(own)) {
         hewn_text_print(text,
-                        "uint chunk=field_begin;\ndo{\nif(field_kept_from!=chunk)field_load(chunk);\nuint "
-                        "at=field_first;\n"
-                        "do{\nuint head=field_heads[at],from=field_order[at]*%uu;\n",
+                        "uint at=0u;\ndo{\nuint only_a=0u,only_r=0u,stop=min(count,at+32u);\n"
+                        "do{\nuint head=field_all[at],from=at*%uu;\n",
                         words / n);
+        write_instruction(own, each);
+        hewn_text_append(text, "at++;\n}while(at<stop);\n");
+        write_vote(own);
+        hewn_text_append(text, "}while(at<count);\n");
+    } else if (keeps(own)) {
+        hewn_text_print(
+            text,
+            "uint chunk=field_begin;\ndo{\nif(field_kept_from!=chunk)field_load(chunk);\nuint "
+            "at=field_first;\n"
+            "do{\nuint "
+            "head=field_narrowed?field_heads[at]:field_all[at],from=(field_narrowed?field_order[at]:at)*%uu;\n",
+            words / n);
         write_instruction(own, each);
         hewn_text_print(text, "at++;\n}while(at<field_last);\nchunk+=%uu;\n}while(chunk<field_end);\n", KEPT);
     } else if (n) {
@@ -336,43 +354,40 @@ static void write_keeping(const hewn_instruction_set *set, const hewn_walking *h
     uint32_t n = how->together, parts = set->words / n;
     hewn_text_print(text,
                     "uint field_words[%u],field_all[%u],field_heads[%u],field_order[%u],field_first=0u,field_last=0u;\n"
+                    "uint field_without_a[%u],field_without_r[%u];\nbool field_narrowed=false;\n"
                     "void field_load(uint chunk)\n{\n"
                     "hewn_words list=hewn_words(field_list),code=hewn_words(hewn_numbers_at);\n"
                     "uint at=chunk,stop=min(field_end,chunk+%uu);\n"
                     "do{\nuint entries=list.at[2u*at+gl_SubgroupInvocationID],entry=0u,entry_end=min(%uu,stop-at);\n"
                     "do{\nuint i=at-chunk+entry,head=subgroupShuffle(entries,2u*entry),"
                     "from=subgroupShuffle(entries,2u*entry+1u)*FIELD_WORDS;\n"
-                    "field_all[i]=head;\nfield_heads[i]=head;\nfield_order[i]=i;\n",
-                    KEPT * parts, KEPT, KEPT, KEPT, KEPT, n / 2);
+                    "field_all[i]=head;\n",
+                    KEPT * parts, KEPT, KEPT, KEPT, KEPT / 32, KEPT / 32, KEPT, n / 2);
     for (uint32_t i = 0; i < parts; i++)
         hewn_text_print(text, "field_words[i*%uu+%uu]=code.at[from+%uu+gl_SubgroupInvocationID];\n", parts, i, i * n);
-    hewn_text_append(text, "entry++;\n}while(entry<entry_end);\nat+=entry_end;\n}while(at<stop);\n"
-                           "field_kept_from=chunk;\nfield_first=0u;\nfield_last=stop-chunk;\n}\n");
+    hewn_text_append(text,
+                     "entry++;\n}while(entry<entry_end);\nat+=entry_end;\n}while(at<stop);\n"
+                     "field_kept_from=chunk;\nfield_first=0u;\nfield_last=stop-chunk;\nfield_narrowed=false;\n}\n");
 }
 
-/* Votes are taken by exchange with neighbours ever farther off. An invocation that nothing matters to agrees to all. */
 static void write_narrowing(const hewn_instruction_set *set, const hewn_walking *how, hewn_text *text)
 {
     walk narrow = started(narrow_walk, set, how, text);
-    hewn_text_append(text, "void field_narrow(vec2 x,vec2 y,vec2 z,bool matters)\n{\n");
+    hewn_text_append(text, "void field_narrow(vec2 x,vec2 y,vec2 z,bool matters,uint least)\n{\n");
     if (!how->together || how->whole || set->combination_count == 0) {
         hewn_text_append(text, "}\n");
         return;
     }
     hewn_text_print(text,
-                    "uint count=field_end-field_begin;\nif(count<=%uu){\nfield_load(field_begin);\n"
-                    "uvec2 only_a=uvec2(0u),only_r=uvec2(0u);\nbool near=f_result(vec2(0.0),x,y,z).x==0.0;\n",
+                    "uint count=field_end-field_begin;\nif(count>=least&&count<=%uu){\n"
+                    "if(field_kept_from!=field_begin)field_load(field_begin);\n"
+                    "bool near=f_result(vec2(0.0),x,y,z).x==0.0;\n",
                     KEPT);
     write_walk(&narrow);
-    hewn_text_append(text, "if(!matters)\nonly_a=only_r=uvec2(~0u);\n");
-    for (uint32_t far = 1; far < how->together; far *= 2)
-        hewn_text_print(text,
-                        "only_a&=subgroupShuffle(only_a,gl_SubgroupInvocationID^%uu);\n"
-                        "only_r&=subgroupShuffle(only_r,gl_SubgroupInvocationID^%uu);\n",
-                        far, far);
-    hewn_text_append(text, "Keeping state=field_keeping();\nuint left=count;\nfield_first=count;\ndo{\nleft--;\n"
-                           "bool no_r=((left<32u?only_a.x:only_a.y)>>(left&31u)&1u)!=0u,"
-                           "no_a=((left<32u?only_r.x:only_r.y)>>(left&31u)&1u)!=0u;\nuint made;\n"
+    hewn_text_append(text, "Keeping state=field_keeping();\nuint left=count;\nfield_first=field_last=count;\n"
+                           "field_narrowed=true;\ndo{\nleft--;\n"
+                           "bool no_r=(field_without_r[left>>5]>>(left&31u)&1u)!=0u,"
+                           "no_a=(field_without_a[left>>5]>>(left&31u)&1u)!=0u;\nuint made;\n"
                            "if(field_keeps(state,field_all[left],no_r?1u:no_a?2u:0u,made)){\nfield_first--;\n"
                            "field_heads[field_first]=made;\nfield_order[field_first]=left;\n}\n"
                            "}while(left>0u&&state.used!=0u);\n}\n}\n");
@@ -380,9 +395,6 @@ static void write_narrowing(const hewn_instruction_set *set, const hewn_walking 
 
 static void write_fours(const hewn_instruction_set *set, const hewn_walking *how, hewn_text *text)
 {
-    if (how->together)
-        write_keeping(set, how, text);
-    write_narrowing(set, how, text);
     walk points = started(four_walk, set, how, text), gradients = started(gradients_walk, set, how, text);
     hewn_text_append(text, "vec4 field_points(vec4 xs,vec4 ys,vec4 zs)\n{\n");
     write_walk(&points);
@@ -446,6 +458,11 @@ void hewn_instruction_set_declare(const hewn_instruction_set *set, const hewn_wa
 void hewn_instruction_set_write(const hewn_instruction_set *set, const hewn_walking *how, uint32_t flavours,
                                 hewn_text *text)
 {
+    const uint32_t many = HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_ROW;
+    if (how->together && flavours & (many | HEWN_FLAVOUR_INTERVAL))
+        write_keeping(set, how, text);
+    if (flavours & many)
+        write_narrowing(set, how, text);
     if (flavours & (HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_ROW))
         write_points(set, how, flavours, text);
     if (flavours & (HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_CHOICES))

@@ -1,10 +1,12 @@
-/* Culling of a field in lists: each level's interval arithmetic walks the lists of the level above, and makes shorter
- * ones for the blocks it keeps. Counts come home between levels, since only they tell how large the lists are. */
+/* Culling of a field in lists: each level's interval arithmetic walks the lists of the level above, and shorter ones
+ * are made for the blocks it keeps; on CPU devices by the host, since a kernel reads memory there lane by lane. Counts
+ * come home between levels, since only they tell how large the lists are. */
 #include <string.h>
 
 #include "base/error.h"
 #include "eval/lists.h"
 #include "iso/extractor.h"
+#include "iso/host_lists.h"
 #include "shared/lists.h"
 
 typedef struct list_level {
@@ -97,6 +99,40 @@ static void record_keep(const list_run *run, uint64_t blocks, hewn_commands *com
                            hewn_groups_for(blocks, 64));
 }
 
+static hewn_host_lists view_on_host(const list_run *run)
+{
+    const list_level *level = &run->level, *above = &run->above;
+    hewn_host_lists view = {.tested = level->tested,
+                            .parent_entries = hewn_code_whole_list(run->extractor->code),
+                            .whole_count = hewn_code_instruction_count(run->extractor->code),
+                            .choices = level->choices->mapped,
+                            .states = level->states->mapped,
+                            .kept = level->list->mapped,
+                            .origins = level->origins->mapped,
+                            .places = level->lengths->mapped};
+    if (run->at_top) {
+        memcpy(view.dense, run->top, sizeof view.dense);
+    } else {
+        view.parents = above->list->mapped;
+        view.parent_entries = above->instructions->mapped;
+        view.parent_ranges = above->ranges->mapped;
+    }
+    return view;
+}
+
+/* Lists the blocks that are kept, and counts their instructions. */
+static void record_count(const list_run *run, const hewn_buffer *scratch, hewn_commands *commands)
+{
+    const list_level *level = &run->level;
+    hewn_scan_record(run->extractor->scan, commands, level->flags->address, level->tested, run->totals->address,
+                     scratch->address);
+    record_gather(run, commands);
+    record_keep(run, level->tested, commands);
+    hewn_scan_record(run->extractor->scan, commands, level->lengths->address, (uint64_t)level->tested + 1,
+                     run->totals->address + 8, scratch->address);
+    hewn_commands_copy(commands, run->totals, 0, run->results, 0, 16);
+}
+
 /* Tests the level's blocks, and learns how many are kept and how many instructions their lists have. */
 static hewn_result choose(list_run *run, uint32_t totals[4], hewn_error *error)
 {
@@ -107,15 +143,18 @@ static hewn_result choose(list_run *run, uint32_t totals[4], hewn_error *error)
     HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
     hewn_commands_fill(commands, level->lengths, 0, level->lengths->size, 0);
     record_choose(run, commands);
-    hewn_scan_record(run->extractor->scan, commands, level->flags->address, level->tested, run->totals->address,
-                     scratch->address);
-    record_gather(run, commands);
-    record_keep(run, level->tested, commands);
-    hewn_scan_record(run->extractor->scan, commands, level->lengths->address, (uint64_t)level->tested + 1,
-                     run->totals->address + 8, scratch->address);
-    hewn_commands_copy(commands, run->totals, 0, run->results, 0, 16);
+    if (!run->extractor->on_host)
+        record_count(run, scratch, commands);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
-    memcpy(totals, run->results->mapped, 16);
+    if (run->extractor->on_host) {
+        const hewn_host_lists view = view_on_host(run);
+        uint64_t instructions;
+        totals[0] = hewn_host_lists_count(&view, &instructions);
+        totals[2] = (uint32_t)instructions;
+        totals[3] = (uint32_t)(instructions >> 32);
+    } else {
+        memcpy(totals, run->results->mapped, 16);
+    }
     return hewn_scan_check(totals + 2, "instructions of lists", error);
 }
 
@@ -124,10 +163,15 @@ static hewn_result make_lists(list_run *run, uint64_t instructions, hewn_error *
     list_level *level = &run->level;
     HEWN_TRY(take(run, "ranges of lists", (uint64_t)8 * level->kept, &level->ranges, error));
     HEWN_TRY(take(run, "instructions", HEWN_LIST_ENTRY * instructions + HEWN_LIST_SLACK, &level->instructions, error));
-    hewn_commands *commands;
-    HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
-    record_keep(run, level->kept, commands);
-    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    if (run->extractor->on_host) {
+        const hewn_host_lists view = view_on_host(run);
+        hewn_host_lists_write(&view, level->kept, level->instructions->mapped, level->ranges->mapped);
+    } else {
+        hewn_commands *commands;
+        HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
+        record_keep(run, level->kept, commands);
+        HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    }
     hewn_code_use_lists(run->extractor->code, level->instructions, level->ranges);
     return HEWN_OK;
 }

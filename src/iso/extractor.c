@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "gpu/device.h"
 #include "iso/fixed_kernel.h"
 #include "iso/marching_cubes.h"
 #include "shared/lists.h"
@@ -51,7 +52,8 @@ static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *
           sizeof(struct hewn_listed_vertex_push)},
          &extractor->vertices,
          LISTED},
-        {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_suspect_push)},
+        {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_TOGETHER,
+          sizeof(struct hewn_suspect_push)},
          &extractor->suspects.find,
          STRAIGHT | LISTED},
     };
@@ -104,6 +106,7 @@ hewn_result hewn_extractor_create_as(hewn_device *device, const hewn_field *fiel
     if (!extractor)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an extractor");
     extractor->device = device;
+    extractor->on_host = device->info.kind == HEWN_DEVICE_CPU;
     hewn_result result = create_parts(extractor, field, root, desc, error);
     if (result != HEWN_OK) {
         hewn_extractor_destroy(&extractor);

@@ -28,6 +28,7 @@ typedef struct hewn_dual_programs {
 
 struct hewn_extractor {
     hewn_device *device;
+    bool on_host; /* the device is a CPU: stages that need no field are the host's */
     hewn_code *code;
     hewn_scan *scan;
     hewn_buffer table;                                            /* hewn_mc_table */
