@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform Push
     hewn_listed_vertex_push push;
 };
 
-const uint A_BRICK = 16u; /* invocations */
+const uint A_BRICK = 8u; /* invocations */
 
 struct Edge {
     vec3 start;
@@ -111,6 +111,17 @@ void write_solved(uint vertex, const Edge edge, vec3 at, vec4 gradient, float at
         atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
 }
 
+/* Leaves out of the list what is needed on none of these edges. */
+void narrow(const vec3 starts[4], const vec3 ends[4], uint count)
+{
+    vec3 lo = min(starts[0], ends[0]), hi = max(starts[0], ends[0]);
+    for (uint k = 1u; k < 4u; k++) {
+        lo = k < count ? min(lo, min(starts[k], ends[k])) : lo;
+        hi = k < count ? max(hi, max(starts[k], ends[k])) : hi;
+    }
+    field_narrow(vec2(lo.x, hi.x), vec2(lo.y, hi.y), vec2(lo.z, hi.z), count > 0u, 2u);
+}
+
 void solve_four(uint first, uint end, uvec3 base)
 {
     vec3 starts[4], ends[4], found[4];
@@ -120,6 +131,7 @@ void solve_four(uint first, uint end, uvec3 base)
         ends[k] = edges[k].start;
         ends[k][edges[k].axis] = edges[k].end;
     }
+    narrow(starts, ends, first < end ? min(end - first, 4u) : 0u);
     vec4 at_start = values_at(starts), at_end = values_at(ends);
     solve(at_start, at_end, first < end ? end - first : 0u);
     float least = push.dual != 0u ? 0.0 : NEAREST;

@@ -53,7 +53,8 @@ static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *
           sizeof(struct hewn_listed_vertex_push)},
          &extractor->vertices,
          LISTED},
-        {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_suspect_push)},
+        {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_TOGETHER,
+          sizeof(struct hewn_suspect_push)},
          &extractor->suspects.find,
          STRAIGHT | LISTED},
     };

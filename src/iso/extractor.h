@@ -31,7 +31,8 @@ struct hewn_extractor {
     hewn_code *code;
     hewn_scan *scan;
     bool far;          /* kernels take coordinates beyond HEWN_REACH too, see hewn_extractor_reach() */
-    bool on_host;      /* the host does what needs no field between signs and vertices: see iso/host_surface.h */
+    bool on_host;      /* the device is a CPU: stages that need no field are the host's, see iso/host_surface.h,
+                          iso/host_lists.h */
     hewn_buffer table; /* hewn_mc_table */
     hewn_program *cull, *signs, *vertices;                        /* made of the field */
     hewn_program *choose, *keep_lists, *gather;                   /* instead of `cull` where it is in lists */

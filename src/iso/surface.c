@@ -168,7 +168,7 @@ void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_gr
                                                .normals = crossings->normals->address,
                                                .summary = crossings->summary};
         hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms,
-                               hewn_groups_for((uint64_t)bricks->count * 16, 64));
+                               hewn_groups_for((uint64_t)bricks->count * 8, 64));
         return;
     }
     struct hewn_vertex_push push = {.grid = *grid,

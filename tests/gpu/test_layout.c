@@ -185,16 +185,16 @@ static void test_list_kernels(void **state)
           MEMBER(hewn_choose_push, dense[0], NUMBER), MEMBER(hewn_choose_push, dense[2], NUMBER),
           MEMBER(hewn_choose_push, tested, NUMBER), MEMBER(hewn_choose_push, parents, ADDRESS),
           MEMBER(hewn_choose_push, parent_ranges, ADDRESS), MEMBER(hewn_choose_push, states, ADDRESS),
-          MEMBER(hewn_choose_push, flags, ADDRESS), MEMBER(hewn_choose_push, lengths, ADDRESS),
-          MEMBER(hewn_choose_push, choices, ADDRESS));
+          MEMBER(hewn_choose_push, flags, ADDRESS), MEMBER(hewn_choose_push, choices, ADDRESS));
     CHECK(hewn_gather_push, MEMBER(hewn_gather_push, dense[0], NUMBER), MEMBER(hewn_gather_push, tested, NUMBER),
           MEMBER(hewn_gather_push, parents, ADDRESS), MEMBER(hewn_gather_push, states, ADDRESS),
           MEMBER(hewn_gather_push, ranks, ADDRESS), MEMBER(hewn_gather_push, kept, ADDRESS),
           MEMBER(hewn_gather_push, origins, ADDRESS));
-    CHECK(hewn_keep_push, MEMBER(hewn_keep_push, count, NUMBER), MEMBER(hewn_keep_push, dense, NUMBER),
-          MEMBER(hewn_keep_push, parent_ranges, ADDRESS), MEMBER(hewn_keep_push, origins, ADDRESS),
-          MEMBER(hewn_keep_push, places, ADDRESS), MEMBER(hewn_keep_push, choices, ADDRESS),
-          MEMBER(hewn_keep_push, lists, ADDRESS), MEMBER(hewn_keep_push, ranges, ADDRESS));
+    CHECK(hewn_keep_push, MEMBER(hewn_keep_push, dense, NUMBER), MEMBER(hewn_keep_push, write, NUMBER),
+          MEMBER(hewn_keep_push, kept, ADDRESS), MEMBER(hewn_keep_push, parent_ranges, ADDRESS),
+          MEMBER(hewn_keep_push, origins, ADDRESS), MEMBER(hewn_keep_push, places, ADDRESS),
+          MEMBER(hewn_keep_push, choices, ADDRESS), MEMBER(hewn_keep_push, lists, ADDRESS),
+          MEMBER(hewn_keep_push, ranges, ADDRESS));
     CHECK(hewn_listed_vertex_push, GRID(hewn_listed_vertex_push), MEMBER(hewn_listed_vertex_push, count, NUMBER),
           MEMBER(hewn_listed_vertex_push, vertex_count, NUMBER), MEMBER(hewn_listed_vertex_push, bricks, ADDRESS),
           MEMBER(hewn_listed_vertex_push, vertex_bases, ADDRESS), MEMBER(hewn_listed_vertex_push, positions, ADDRESS),
