@@ -6,7 +6,7 @@
 
 #include "base/alloc.h"
 
-enum { MOST_PARTS = 8, SHORT_ROW = 48 };
+enum { MOST_PARTS = 8, SHORT_ROW = 48, MOST_INSIDE = 32 };
 
 void hewn_smooth_rows_free(smooth_rows *rows)
 {
@@ -15,25 +15,29 @@ void hewn_smooth_rows_free(smooth_rows *rows)
     *rows = (smooth_rows){0};
 }
 
-/* Sides or corners of all faces are handed to the vertices by several threads at once: each reads all of them and
- * serves a range of vertices of its own, so no order depends on threads. */
+/* --- corners ------------------------------------------------------------------------------------------------------ */
+
+/* The vertices before and after a corner in its face. */
+typedef struct corner_sides {
+    uint32_t next, before;
+} corner_sides;
+
+/* Corners of all faces are handed to the vertices by several threads at once: each reads all of them and serves a range
+ * of vertices of its own, so no order depends on threads. Without rows to fill they are only counted. */
 typedef struct row_filler {
     const hewn_polygons *polygons;
-    uint32_t *ends; /* of each row, counted up while it is filled */
-    uint32_t *items;
-    bool sides; /* both ends of each side, else corners */
+    uint32_t *ends;      /* of each row, counted up while it is filled */
+    uint32_t *corners;   /* rows of corners, or */
+    corner_sides *sides; /* rows of their sides */
 } row_filler;
 
-static inline void serve(const row_filler *filler, uint32_t vertex, uint32_t item)
+static inline void serve(const row_filler *filler, uint64_t corner, uint32_t before, uint32_t at, uint32_t next)
 {
-    if (filler->items)
-        filler->items[filler->ends[vertex]] = item;
-    filler->ends[vertex]++;
-}
-
-static inline bool is_in(uint32_t vertex, uint32_t from, uint32_t to)
-{
-    return vertex - from < to - from;
+    uint32_t place = filler->ends[at]++;
+    if (filler->corners)
+        filler->corners[place] = (uint32_t)corner;
+    if (filler->sides)
+        filler->sides[place] = (corner_sides){next, before};
 }
 
 static void serve_range(const row_filler *filler, uint32_t from, uint32_t to)
@@ -45,14 +49,8 @@ static void serve_range(const row_filler *filler, uint32_t from, uint32_t to)
         uint32_t before = end > begin ? corners[end - 1] : 0;
         for (uint64_t c = begin; c < end; c++) {
             uint32_t at = corners[c];
-            if (!filler->sides && is_in(at, from, to))
-                serve(filler, at, (uint32_t)c);
-            if (filler->sides && at != before) {
-                if (is_in(at, from, to))
-                    serve(filler, at, before);
-                if (is_in(before, from, to))
-                    serve(filler, before, at);
-            }
+            if (at - from < to - from)
+                serve(filler, c, before, at, corners[c + 1 < end ? c + 1 : begin]);
             before = at;
         }
         begin = end;
@@ -71,35 +69,45 @@ static void serve_all(const row_filler *filler)
                     (uint32_t)(count * ((uint64_t)part + 1) / (uint64_t)parts));
 }
 
-/* Rows of raw entries: for sides each neighbour once for every face beside the edge. */
-static hewn_result fill_rows(const hewn_polygons *polygons, bool sides, smooth_rows *out, hewn_error *error)
+static hewn_result out_of_memory(uint32_t count, hewn_error *error)
 {
-    uint32_t count = (uint32_t)polygons->vertex_count;
-    *out = (smooth_rows){.count = count, .first = hewn_alloc_zero((size_t)count + 1, sizeof *out->first)};
-    if (!out->first)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the neighbours of %u vertices", count);
-    row_filler filler = {.polygons = polygons, .ends = out->first + 1, .sides = sides};
-    serve_all(&filler);
-    uint32_t sum = 0;
+    return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the neighbours of %u vertices", count);
+}
+
+/* Where rows of corners begin; with room for another word a row after them. */
+static hewn_result count_corners(const hewn_polygons *polygons, uint32_t **first, hewn_error *error)
+{
+    uint32_t count = (uint32_t)polygons->vertex_count, sum = 0;
+    *first = hewn_alloc_zero((size_t)count + 2, sizeof **first);
+    if (!*first)
+        return out_of_memory(count, error);
+    const row_filler counter = {.polygons = polygons, .ends = *first + 2};
+    serve_all(&counter);
     for (uint32_t v = 0; v < count; v++) { /* lengths become beginnings, one place later, which filling makes ends */
-        uint32_t length = out->first[v + 1];
-        out->first[v + 1] = sum;
+        uint32_t length = (*first)[v + 2];
+        (*first)[v + 1] = sum;
         sum += length;
     }
-    out->items = hewn_alloc(sum, sizeof *out->items);
-    if (!out->items)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the neighbours of %u vertices", count);
-    filler.items = out->items;
-    serve_all(&filler);
+    (*first)[count + 1] = sum;
     return HEWN_OK;
 }
 
 hewn_result hewn_smooth_corners(const hewn_polygons *polygons, smooth_rows *out, hewn_error *error)
 {
-    hewn_result result = fill_rows(polygons, false, out, error);
-    if (result != HEWN_OK)
+    *out = (smooth_rows){.count = (uint32_t)polygons->vertex_count};
+    hewn_result result = count_corners(polygons, &out->first, error);
+    if (result == HEWN_OK) {
+        out->items = hewn_alloc(out->first[out->count + 1], sizeof *out->items);
+        if (!out->items)
+            result = out_of_memory(out->count, error);
+    }
+    if (result != HEWN_OK) {
         hewn_smooth_rows_free(out);
-    return result;
+        return result;
+    }
+    const row_filler filler = {.polygons = polygons, .ends = out->first + 1, .corners = out->items};
+    serve_all(&filler);
+    return HEWN_OK;
 }
 
 /* --- neighbours --------------------------------------------------------------------------------------------------- */
@@ -124,8 +132,9 @@ static void sort_row(uint32_t *row, uint32_t length)
     }
 }
 
-/* Sorts a row of raw entries and keeps at its front what belongs there; the new length is returned. */
-static uint32_t settle_row(uint32_t *row, uint32_t length, uint8_t *flags)
+/* Neighbours, each once for every face beside the edge: those that all edges share belong there, or the two of the rim.
+ * They go to the row's front; how many they are is returned. */
+static uint32_t settle_rim(uint32_t *row, uint32_t length, uint8_t *flags)
 {
     sort_row(row, length);
     uint32_t kept = 0, rims = 0, rim[2] = {0, 0};
@@ -144,35 +153,85 @@ static uint32_t settle_row(uint32_t *row, uint32_t length, uint8_t *flags)
     return rims == 0 ? kept : rims == 2 ? 2 : 0;
 }
 
+/* Around most vertices each neighbour comes after one corner and before another: these are sorted to `out`. */
+static bool settle_inside(const corner_sides *sides, uint32_t length, uint32_t v, uint32_t *out)
+{
+    uint32_t met = 0;
+    for (uint32_t i = 0; i < length; i++) {
+        uint32_t item = sides[i].next, at = i;
+        for (; at > 0 && out[at - 1] > item; at--)
+            out[at] = out[at - 1];
+        if (item == v || (at > 0 && out[at - 1] == item))
+            return false;
+        out[at] = item;
+    }
+    for (uint32_t i = 0; i < length; i++)
+        for (uint32_t k = 0; k < length; k++)
+            met |= (uint32_t)(out[k] == sides[i].before) << k;
+    return length > 0 && met == UINT32_MAX >> (32 - length);
+}
+
+/* What belongs into the row of a vertex goes to the front of `sides`, whose room is two words a corner. */
+static uint32_t settle_row(corner_sides *sides, uint32_t length, uint32_t v, uint8_t *flags)
+{
+    uint32_t inside[MOST_INSIDE], *row = (uint32_t *)sides, kept = 0;
+    if (length <= MOST_INSIDE && settle_inside(sides, length, v, inside)) {
+        memcpy(row, inside, length * sizeof *row);
+        *flags = SMOOTH_USED;
+        return length;
+    }
+    for (uint32_t i = 0; i < 2 * length; i++)
+        if (row[i] != v)
+            row[kept++] = row[i];
+    return settle_rim(row, kept, flags);
+}
+
+/* Moves rows together; `first` holds the lengths of `out`'s. */
+static hewn_result take_rows(const uint32_t *places, const corner_sides *sides, smooth_rows *out, hewn_error *error)
+{
+    uint32_t sum = 0;
+    for (uint32_t v = 0; v < out->count; v++) {
+        uint32_t length = out->first[v];
+        out->first[v] = sum;
+        sum += length;
+    }
+    out->first[out->count] = sum;
+    out->items = hewn_alloc(sum, sizeof *out->items);
+    if (!out->items)
+        return out_of_memory(out->count, error);
+#pragma omp parallel for schedule(static)
+    for (uint32_t v = 0; v < out->count; v++)
+        memcpy(out->items + out->first[v], sides + places[v], (out->first[v + 1] - out->first[v]) * sizeof *out->items);
+    return HEWN_OK;
+}
+
+static hewn_result settle_rows(const hewn_polygons *polygons, uint32_t *places, smooth_rows *out, uint8_t *flags,
+                               hewn_error *error)
+{
+    corner_sides *sides = hewn_alloc(places[out->count + 1], sizeof *sides);
+    if (!sides)
+        return out_of_memory(out->count, error);
+    const row_filler filler = {.polygons = polygons, .ends = places + 1, .sides = sides};
+    serve_all(&filler);
+#pragma omp parallel for schedule(static)
+    for (uint32_t v = 0; v < out->count; v++)
+        out->first[v] = settle_row(sides + places[v], places[v + 1] - places[v], v, flags + v);
+    hewn_result result = take_rows(places, sides, out, error);
+    hewn_free(sides);
+    return result;
+}
+
 hewn_result hewn_smooth_neighbours(const hewn_polygons *polygons, smooth_rows *out, uint8_t *flags, hewn_error *error)
 {
-    smooth_rows raw;
-    uint32_t count = (uint32_t)polygons->vertex_count;
+    uint32_t count = (uint32_t)polygons->vertex_count, *places;
     *out = (smooth_rows){.count = count, .first = hewn_alloc((size_t)count + 1, sizeof *out->first)};
-    hewn_result result = fill_rows(polygons, true, &raw, error);
-    if (result == HEWN_OK && !out->first)
-        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the neighbours of %u vertices", count);
-    if (result == HEWN_OK) {
-#pragma omp parallel for schedule(static)
-        for (uint32_t v = 0; v < count; v++)
-            out->first[v] = settle_row(raw.items + raw.first[v], raw.first[v + 1] - raw.first[v], flags + v);
-        uint32_t sum = 0;
-        for (uint32_t v = 0; v < count; v++) {
-            uint32_t length = out->first[v];
-            out->first[v] = sum;
-            sum += length;
-        }
-        out->first[count] = sum;
-        out->items = hewn_alloc(sum, sizeof *out->items);
-        if (!out->items)
-            result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the neighbours of %u vertices", count);
-    }
+    hewn_result result = out->first ? HEWN_OK : out_of_memory(count, error);
     if (result == HEWN_OK)
-#pragma omp parallel for schedule(static)
-        for (uint32_t v = 0; v < count; v++)
-            memcpy(out->items + out->first[v], raw.items + raw.first[v],
-                   (out->first[v + 1] - out->first[v]) * sizeof *out->items);
-    hewn_smooth_rows_free(&raw);
+        result = count_corners(polygons, &places, error);
+    if (result == HEWN_OK) {
+        result = settle_rows(polygons, places, out, flags, error);
+        hewn_free(places);
+    }
     if (result != HEWN_OK)
         hewn_smooth_rows_free(out);
     return result;
