@@ -1,10 +1,11 @@
 /* Noise taken off a machine part, by Hewn's bilateral smoothing and by VTK's and CGAL's filters with the best of their
  * parameters each: the share of the noise that is left, and the median change of sharp edges.
- * usage: denoise MESH [--noise EDGES] */
+ * usage: denoise [MESH] [--noise EDGES]   (without a mesh: fandisk.off of the test data, where these are there) */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "../tests/oracle/denoise.h"
 #include "base/alloc.h"
@@ -105,18 +106,31 @@ static void print(const char *name, const outcome *of)
            of->with);
 }
 
+static const char *default_mesh(char path[4096])
+{
+    const char *data = getenv("HEWN_DATA");
+    snprintf(path, 4096, "%s/mesh-cad/fandisk.off", data ? data : "../shared/data");
+    return access(path, R_OK) == 0 ? path : NULL;
+}
+
 int main(int argc, char **argv)
 {
     hewn_model clean;
     hewn_error error;
-    double share = argc > 3 && strcmp(argv[2], "--noise") == 0 ? atof(argv[3]) : 0.1;
-    if (argc < 2 || hewn_model_read(argv[1], NULL, &clean, &error) != HEWN_OK) {
-        fprintf(stderr, "usage: denoise MESH [--noise EDGES]%s%s\n", argc < 2 ? "" : ": ",
-                argc < 2 ? "" : error.message);
+    char path[4096];
+    bool named = argc > 1 && argv[1][0] != '-';
+    const char *mesh = named ? argv[1] : default_mesh(path);
+    double share = argc > 2 + named && strcmp(argv[1 + named], "--noise") == 0 ? atof(argv[2 + named]) : 0.1;
+    if (!mesh) {
+        fprintf(stderr, "bench: no test data here, and no mesh named\n");
+        return 0;
+    }
+    if (hewn_model_read(mesh, NULL, &clean, &error) != HEWN_OK) {
+        fprintf(stderr, "bench: %s: %s\n", mesh, error.message);
         return 1;
     }
     if (clean.first) {
-        fprintf(stderr, "bench: %s is not of triangles\n", argv[1]);
+        fprintf(stderr, "bench: %s is not of triangles\n", mesh);
         return 1;
     }
     size_t numbers = 3 * (size_t)clean.vertex_count;
@@ -132,7 +146,7 @@ int main(int argc, char **argv)
         noisy[i] = clean.positions[i] + share * edge * sqrt(-2 * log(1 - u)) * cos(2 * M_PI * v);
     }
     run.noise = noise_left(&clean, noisy);
-    printf("%s, %llu triangles, noise of %g edges, %zu sharp edges; peers with what leaves least noise\n", argv[1],
+    printf("%s, %llu triangles, noise of %g edges, %zu sharp edges; peers with what leaves least noise\n", mesh,
            (unsigned long long)clean.face_count, share, run.sharp_count);
     const outcome all[] = {try_hewn(&run, HEWN_SMOOTH_BILATERAL),
                            try_hewn(&run, HEWN_SMOOTH_LAPLACIAN),
