@@ -6,7 +6,7 @@
 
 #include "base/alloc.h"
 
-enum { MOST_PARTS = 8, SHORT_ROW = 48, MOST_INSIDE = 32 };
+enum { MOST_PARTS = 8, SHORT_ROW = 48, MOST_INSIDE = 8 };
 
 void hewn_smooth_rows_free(smooth_rows *rows)
 {
@@ -31,30 +31,62 @@ typedef struct row_filler {
     corner_sides *sides; /* rows of their sides */
 } row_filler;
 
-static inline void serve(const row_filler *filler, uint64_t corner, uint32_t before, uint32_t at, uint32_t next)
+typedef enum row_kind { COUNTED, CORNERS, SIDES } row_kind;
+
+/* A range of vertices, which one thread serves with rows of one kind. */
+typedef struct row_server {
+    uint32_t *ends, *corners;
+    corner_sides *sides;
+    uint32_t from, length;
+} row_server;
+
+static inline void serve(const row_server *to, row_kind kind, uint64_t corner, const uint32_t around[3])
 {
-    uint32_t place = filler->ends[at]++;
-    if (filler->corners)
-        filler->corners[place] = (uint32_t)corner;
-    if (filler->sides)
-        filler->sides[place] = (corner_sides){next, before};
+    uint32_t at = around[1];
+    if (at - to->from >= to->length)
+        return;
+    uint32_t place = to->ends[at]++;
+    if (kind == CORNERS)
+        to->corners[place] = (uint32_t)corner;
+    if (kind == SIDES)
+        to->sides[place] = (corner_sides){around[2], around[0]};
+}
+
+static inline void serve_triangles(const hewn_polygons *polygons, row_server to, row_kind kind)
+{
+    for (uint64_t c = 0; c < 3 * polygons->face_count; c += 3) {
+        const uint32_t *corner = polygons->corners + c;
+        const uint32_t around[5] = {corner[2], corner[0], corner[1], corner[2], corner[0]};
+        for (uint64_t k = 0; k < 3; k++)
+            serve(&to, kind, c + k, around + k);
+    }
+}
+
+static inline void serve_polygons(const hewn_polygons *polygons, row_server to, row_kind kind)
+{
+    for (uint64_t f = 0; f < polygons->face_count; f++) {
+        uint64_t begin = polygons->first[f], end = polygons->first[f + 1];
+        for (uint64_t c = begin; c < end; c++) {
+            const uint32_t around[3] = {polygons->corners[c > begin ? c - 1 : end - 1], polygons->corners[c],
+                                        polygons->corners[c + 1 < end ? c + 1 : begin]};
+            serve(&to, kind, c, around);
+        }
+    }
 }
 
 static void serve_range(const row_filler *filler, uint32_t from, uint32_t to)
 {
     const hewn_polygons *polygons = filler->polygons;
-    const uint32_t *corners = polygons->corners;
-    for (uint64_t f = 0, begin = 0; f < polygons->face_count; f++) {
-        uint64_t end = smooth_face_begin(polygons, f + 1);
-        uint32_t before = end > begin ? corners[end - 1] : 0;
-        for (uint64_t c = begin; c < end; c++) {
-            uint32_t at = corners[c];
-            if (at - from < to - from)
-                serve(filler, c, before, at, corners[c + 1 < end ? c + 1 : begin]);
-            before = at;
-        }
-        begin = end;
-    }
+    const row_server server = {filler->ends, filler->corners, filler->sides, from, to - from};
+    row_kind kind = filler->corners ? CORNERS : filler->sides ? SIDES : COUNTED;
+    if (polygons->first)
+        serve_polygons(polygons, server, kind);
+    else if (kind == CORNERS)
+        serve_triangles(polygons, server, CORNERS);
+    else if (kind == SIDES)
+        serve_triangles(polygons, server, SIDES);
+    else
+        serve_triangles(polygons, server, COUNTED);
 }
 
 static void serve_all(const row_filler *filler)
@@ -153,22 +185,47 @@ static uint32_t settle_rim(uint32_t *row, uint32_t length, uint8_t *flags)
     return rims == 0 ? kept : rims == 2 ? 2 : 0;
 }
 
-/* Around most vertices each neighbour comes after one corner and before another: these are sorted to `out`. */
-static bool settle_inside(const corner_sides *sides, uint32_t length, uint32_t v, uint32_t *out)
+/* Sorts `count` of MOST_INSIDE items by counting those that are less, without a branch; false where two are the same.
+ * Items past the count are INT32_MAX, which no vertex is. */
+static bool rank_sort(const int32_t items[MOST_INSIDE], uint32_t count, uint32_t *out)
 {
-    uint32_t met = 0;
-    for (uint32_t i = 0; i < length; i++) {
-        uint32_t item = sides[i].next, at = i;
-        for (; at > 0 && out[at - 1] > item; at--)
-            out[at] = out[at - 1];
-        if (item == v || (at > 0 && out[at - 1] == item))
-            return false;
-        out[at] = item;
+    int32_t ranks[MOST_INSIDE] = {0};
+    uint32_t taken = 0;
+    for (int k = 0; k < MOST_INSIDE; k++)
+        for (int i = 0; i < MOST_INSIDE; i++)
+            ranks[i] += items[k] < items[i];
+    for (uint32_t i = 0; i < count; i++) {
+        out[ranks[i]] = (uint32_t)items[i];
+        taken |= 1u << ranks[i];
     }
-    for (uint32_t i = 0; i < length; i++)
-        for (uint32_t k = 0; k < length; k++)
-            met |= (uint32_t)(out[k] == sides[i].before) << k;
-    return length > 0 && met == UINT32_MAX >> (32 - length);
+    return taken == (1u << count) - 1;
+}
+
+/* Whether each of `count` items stands exactly once in `among`. */
+static bool stand_once(const int32_t items[MOST_INSIDE], const int32_t among[MOST_INSIDE], uint32_t count)
+{
+    int32_t found[MOST_INSIDE] = {0}, wrong = 0;
+    for (int k = 0; k < MOST_INSIDE; k++)
+        for (int i = 0; i < MOST_INSIDE; i++)
+            found[i] += items[i] == among[k];
+    for (uint32_t i = 0; i < count; i++)
+        wrong |= found[i] ^ 1;
+    return wrong == 0;
+}
+
+/* Around most vertices each neighbour comes after one corner and before another: these are sorted to `out`. */
+static bool settle_inside(const corner_sides *sides, uint32_t length, uint32_t v, uint32_t out[MOST_INSIDE])
+{
+    int32_t next[MOST_INSIDE], before[MOST_INSIDE];
+    bool itself = length == 0;
+    for (uint32_t i = 0; i < MOST_INSIDE; i++)
+        next[i] = before[i] = INT32_MAX;
+    for (uint32_t i = 0; i < length; i++) {
+        next[i] = (int32_t)sides[i].next;
+        before[i] = (int32_t)sides[i].before;
+        itself = itself || next[i] == (int32_t)v;
+    }
+    return !itself && stand_once(next, before, length) && rank_sort(next, length, out);
 }
 
 /* What belongs into the row of a vertex goes to the front of `sides`, whose room is two words a corner. */
