@@ -8,7 +8,7 @@
 #include "shared/lists.h"
 
 typedef struct list_level {
-    uint32_t tested, kept;
+    uint32_t number, tested, kept; /* 0 is the coarsest */
     uint32_t size; /* cells along a block's side */
     uint64_t choice_words;
     hewn_buffer *states, *flags, *lengths, *choices;
@@ -18,6 +18,7 @@ typedef struct list_level {
 typedef struct list_run {
     const hewn_extractor *extractor;
     const struct hewn_grid *grid;
+    const hewn_region *region; /* NULL: all of the grid */
     hewn_workspace *workspace;
     hewn_buffer *totals, *results;
     uint32_t top[3];
@@ -46,6 +47,19 @@ static uint64_t address_of(const hewn_buffer *buffer)
     return buffer ? buffer->address : 0;
 }
 
+static void record_clip(const list_run *run, hewn_commands *commands)
+{
+    const list_level *level = &run->level;
+    hewn_region_level tested = {.level = level->number,
+                                .tested = level->tested,
+                                .parents = address_of(run->above.list),
+                                .states = level->states->address,
+                                .flags = level->flags->address,
+                                .lengths = level->lengths->address};
+    if (run->region)
+        hewn_region_record(run->region, run->extractor->clip, &tested, commands);
+}
+
 /* Tests the level's blocks, and learns how many are kept and how many instructions their lists have. */
 static hewn_result choose(list_run *run, uint32_t totals[4], hewn_error *error)
 {
@@ -68,6 +82,7 @@ static hewn_result choose(list_run *run, uint32_t totals[4], hewn_error *error)
     hewn_commands_fill(commands, level->lengths, (uint64_t)4 * level->tested, 4, 0);
     hewn_commands_dispatch(commands, run->extractor->choose, &push, hewn_code_uniforms(run->extractor->code),
                            hewn_groups_for(level->tested, 64));
+    record_clip(run, commands);
     hewn_scan_record(run->extractor->scan, commands, level->flags->address, level->tested, run->totals->address,
                      scratch->address);
     hewn_scan_record(run->extractor->scan, commands, level->lengths->address, (uint64_t)level->tested + 1,
@@ -113,9 +128,10 @@ static hewn_result make_lists(list_run *run, uint64_t instructions, hewn_error *
 }
 
 hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct hewn_grid *grid,
-                                   hewn_workspace *workspace, hewn_bricks *out, hewn_error *error)
+                                   const hewn_region *region, hewn_workspace *workspace, hewn_bricks *out,
+                                   hewn_error *error)
 {
-    list_run run = {.extractor = extractor, .grid = grid, .workspace = workspace, .at_top = true};
+    list_run run = {.extractor = extractor, .grid = grid, .region = region, .workspace = workspace, .at_top = true};
     uint32_t size = hewn_grid_levels(grid, &out->levels, run.top);
     uint64_t count = (uint64_t)run.top[0] * run.top[1] * run.top[2];
     uint64_t words = (hewn_code_instruction_count(extractor->code) + 15) / 16 * count;
@@ -126,7 +142,7 @@ hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct
         uint32_t totals[4] = {0};
         if (count > UINT32_MAX / 4)
             return hewn_fail(error, HEWN_LIMIT, "%llu blocks are too many to cull at once", (unsigned long long)count);
-        run.level = (list_level){.tested = (uint32_t)count, .size = size, .choice_words = words};
+        run.level = (list_level){.number = i, .tested = (uint32_t)count, .size = size, .choice_words = words};
         HEWN_TRY(choose(&run, totals, error));
         run.level.kept = totals[0];
         if (totals[0] == 0)

@@ -11,6 +11,7 @@
 extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_suspects[], hewn_text_vertices[],
     hewn_text_choose[], hewn_text_keep_lists[], hewn_text_vertices_listed[];
 
+HEWN_SHADER(clip);
 HEWN_SHADER(compact);
 HEWN_SHADER(cuts);
 HEWN_SHADER(link);
@@ -64,6 +65,7 @@ static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *
 static hewn_result create_fixed_programs(hewn_extractor *extractor, hewn_error *error)
 {
     const hewn_fixed_kernel kernels[] = {
+        HEWN_FIXED_KERNEL(clip, clip_push, false, &extractor->clip),
         HEWN_FIXED_KERNEL(compact, compact_push, false, &extractor->compact),
         HEWN_FIXED_KERNEL(gather, gather_push, false, &extractor->gather),
         HEWN_FIXED_KERNEL(link, link_push, false, &extractor->link),
@@ -140,6 +142,7 @@ void hewn_extractor_destroy(hewn_extractor **extractor_place)
     hewn_program **programs[] = {&extractor->cull,
                                  &extractor->signs,
                                  &extractor->vertices,
+                                 &extractor->clip,
                                  &extractor->compact,
                                  &extractor->link,
                                  &extractor->classify,

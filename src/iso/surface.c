@@ -116,14 +116,29 @@ static void record_spread(const hewn_extractor *extractor, const struct hewn_gri
     hewn_commands_dispatch(commands, extractor->spread, &push, &extractor->table, hewn_groups_for(bricks->count, 32));
 }
 
+hewn_own hewn_surface_own(const hewn_surface *surface)
+{
+    if (surface->own.part)
+        return surface->own;
+    bool dual = surface->loops;
+    return (hewn_own){.crossings = {0, surface->crossing_count},
+                      .vertices = {0, surface->vertex_count},
+                      .centres = {0, surface->centre_count},
+                      .triangles = {0, surface->triangle_count},
+                      .bases = {NULL, dual ? surface->crossing_bases : surface->vertex_bases, NULL}};
+}
+
 void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                            const hewn_crossings *crossings, hewn_commands *commands)
 {
     const hewn_buffer *uniforms = hewn_code_uniforms(extractor->code);
+    uint64_t count = crossings->end - crossings->first;
+    if (count == 0)
+        return;
     if (hewn_code_is_listed(extractor->code)) {
         struct hewn_listed_vertex_push push = {.grid = *grid,
                                                .count = bricks->count,
-                                               .vertex_count = (uint32_t)crossings->count,
+                                               .vertex_count = (uint32_t)crossings->end,
                                                .dual = crossings->dual,
                                                .bricks = bricks->list->address,
                                                .vertex_bases = crossings->bases->address,
@@ -135,13 +150,13 @@ void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_gr
         return;
     }
     struct hewn_vertex_push push = {.grid = *grid,
-                                    .count = (uint32_t)crossings->count,
+                                    .count = (uint32_t)count,
                                     .dual = crossings->dual,
                                     .bricks = bricks->list->address,
-                                    .positions = crossings->positions->address,
-                                    .normals = crossings->normals->address,
+                                    .positions = crossings->positions->address + 12 * crossings->first,
+                                    .normals = crossings->normals->address + 12 * crossings->first,
                                     .summary = crossings->summary};
-    hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms, hewn_groups_for(crossings->count, 64));
+    hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms, hewn_groups_for(count, 64));
 }
 
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
@@ -159,19 +174,22 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
         hewn_mc33_record_spread(extractor, grid, bricks, surface, buffers, commands);
     else
         record_spread(extractor, grid, bricks, surface, buffers, commands);
-    hewn_crossings crossings = {.count = surface->crossing_count,
-                                .bases = surface->vertex_bases,
+    hewn_own own = hewn_surface_own(surface);
+    hewn_crossings crossings = {.first = own.crossings[0],
+                                .end = own.crossings[1],
+                                .bases = own.bases[1],
                                 .positions = &buffers[0],
                                 .normals = &buffers[1],
                                 .summary = summary->address};
     hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
     hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
-    struct hewn_triangle_push triangles = {.count = (uint32_t)surface->triangle_count,
+    uint64_t count = own.triangles[1] - own.triangles[0];
+    struct hewn_triangle_push triangles = {.count = (uint32_t)count,
                                            .links = surface->links->address,
                                            .edges = surface->edges->address,
-                                           .indices = buffers[2].address};
+                                           .indices = buffers[2].address + 12 * own.triangles[0]};
     hewn_commands_dispatch(commands, refined ? extractor->mc33.triangles : extractor->triangles, &triangles,
-                           refined ? NULL : &extractor->table, hewn_groups_for(surface->triangle_count, 64));
+                           refined ? NULL : &extractor->table, hewn_groups_for(count, 64));
     hewn_commands_copy(commands, summary, 0, results, 0, summary->size);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
     const uint32_t *words = results->mapped;

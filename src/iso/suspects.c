@@ -58,6 +58,11 @@ static void record_remote(const search *run, hewn_commands *commands)
         push.states[i] = run->bricks->states[i]->address;
     hewn_commands_dispatch(commands, run->extractor->suspects.remote, &push, NULL,
                            hewn_groups_for(run->bricks->count, 32));
+    const hewn_own *own = &run->surface->own;
+    if (own->part && own->bricks[0] > 0) /* others' bricks are not asked */
+        hewn_commands_fill(commands, run->remote, 0, 8 * own->bricks[0], 0);
+    if (own->part && own->bricks[1] < run->bricks->count)
+        hewn_commands_fill(commands, run->remote, 8 * own->bricks[1], 8 * (run->bricks->count - own->bricks[1]), 0);
 }
 
 static void record_find(const search *run, hewn_commands *commands)
