@@ -1,5 +1,7 @@
 /* Takes back the blocks that a level of culling kept but a part of the grid does not need: one invocation a block
- * tested. Needed are the blocks of the part's own bricks, and of those within two bricks of them. */
+ * tested. Needed are the part's own bricks, and those around them whose signs decide about what is the part's own: one
+ * below and two above along each axis, since a brick's cells and edges reach into its upper neighbours, and what is
+ * numbered there into theirs. */
 #version 460
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
@@ -14,7 +16,8 @@ layout(push_constant, scalar) uniform Push
     hewn_clip_push push;
 };
 
-const uint REACH = 2u; /* bricks */
+const uint BELOW = 1u; /* bricks */
+const uint ABOVE = 2u;
 
 /* The number of the block's first brick in the order of bricks. */
 uint first_brick(uvec3 block)
@@ -39,11 +42,12 @@ bool is_needed(uvec3 block)
 {
     if (is_own(block))
         return true;
-    uint reach = push.below == 0u ? REACH : 1u, side = 2u * reach + 1u;
+    /* From a needed brick an own one is found the other way. */
+    uint above = push.below == 0u ? BELOW : 1u, under = push.below == 0u ? ABOVE : 1u, side = under + 1u + above;
     uvec3 limit = uvec3(push.top[0], push.top[1], push.top[2]) << 2u * push.level;
     for (uint i = 0u; i < side * side * side; i++) {
         /* Below 0 wraps around to beyond the limit. */
-        uvec3 near = block + uvec3(i % side, i / side % side, i / (side * side)) - reach;
+        uvec3 near = block + uvec3(i % side, i / side % side, i / (side * side)) - under;
         if (all(lessThan(near, limit)) && is_own(near))
             return true;
     }

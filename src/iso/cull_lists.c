@@ -9,7 +9,7 @@
 
 typedef struct list_level {
     uint32_t number, tested, kept; /* 0 is the coarsest */
-    uint32_t size; /* cells along a block's side */
+    uint32_t size;                 /* cells along a block's side */
     uint64_t choice_words;
     hewn_buffer *states, *flags, *lengths, *choices;
     hewn_buffer *list, *origins, *ranges, *instructions;

@@ -181,10 +181,10 @@ typedef struct emission {
     const struct hewn_grid *grid;
     const hewn_bricks *bricks;
     const hewn_surface *surface;
-    const hewn_buffer *buffers;      /* positions, normals, indices */
-    hewn_buffer *points, *normals;   /* of crossings */
-    hewn_buffer *passed;             /* edges that each vertex's loop passes */
-    hewn_buffer *summary, *results;  /* the mesh's, that of the crossings, and one for what is not a part's own */
+    const hewn_buffer *buffers;     /* positions, normals, indices */
+    hewn_buffer *points, *normals;  /* of crossings */
+    hewn_buffer *passed;            /* edges that each vertex's loop passes */
+    hewn_buffer *summary, *results; /* the mesh's, that of the crossings, and one for what is not a part's own */
     hewn_own own;
     hewn_buffer *records, *crossing; /* of vertices, of quads: where they are kept */
 } emission;
@@ -233,13 +233,14 @@ static void record_spread(const emission *run, hewn_commands *commands)
                            hewn_groups_for(run->bricks->count, 32));
 }
 
-/* Those before a part's own, its own, and those after: they are all solved alike, but only its own are summed up. */
+/* Vertices and quads need crossings of their own brick and of those after it. Those of a part's own bricks are summed
+ * up, the others are not. */
 static void record_crossings(const emission *run, hewn_commands *commands)
 {
     const hewn_own *own = &run->own;
-    const uint64_t ends[4] = {0, own->crossings[0], own->crossings[1], run->surface->crossing_count};
-    for (int i = 0; i < 3; i++) {
-        uint64_t summary = (uint64_t)4 * HEWN_SUMMARY_WORDS * (i == 1 ? 1 : 2);
+    const uint64_t ends[3] = {own->crossings[0], own->crossings[1], run->surface->crossing_count};
+    for (int i = 0; i < 2; i++) {
+        uint64_t summary = (uint64_t)4 * HEWN_SUMMARY_WORDS * (i == 0 ? 1 : 2);
         hewn_crossings crossings = {.first = ends[i],
                                     .end = ends[i + 1],
                                     .dual = true,
@@ -251,15 +252,15 @@ static void record_crossings(const emission *run, hewn_commands *commands)
     }
 }
 
-/* Quads name vertices of bricks before their own, so those have places too; none names those after. */
+/* Quads name vertices of their own brick and of those after it. */
 static void record_vertices(const emission *run, hewn_method method, hewn_commands *commands)
 {
     const hewn_surface *surface = run->surface;
     const hewn_buffer *uniforms = hewn_code_uniforms(run->extractor->code);
     const hewn_dual_programs *programs = &run->extractor->dual;
-    const uint64_t ends[3] = {0, run->own.vertices[0], run->own.vertices[1]};
+    const uint64_t ends[3] = {run->own.vertices[0], run->own.vertices[1], surface->vertex_count};
     for (int i = 0; i < 2; i++) {
-        uint64_t count = ends[i + 1] - ends[i], summary = (uint64_t)4 * HEWN_SUMMARY_WORDS * (i == 1 ? 0 : 2);
+        uint64_t count = ends[i + 1] - ends[i], summary = (uint64_t)4 * HEWN_SUMMARY_WORDS * (i == 0 ? 0 : 2);
         struct hewn_dual_vertex_push vertices = {.grid = *run->grid,
                                                  .count = (uint32_t)count,
                                                  .bricks = run->bricks->list->address,

@@ -6,8 +6,8 @@
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "base/error.h"
-#include "iso/adaptive.h"
 #include "gpu/device.h"
+#include "iso/adaptive.h"
 #include "iso/extraction.h"
 
 /* Owns what a finished mesh lies in where that is the device's memory. */
@@ -302,8 +302,7 @@ hewn_result hewn_extraction_begin(hewn_extractor *extractor, const hewn_extract_
     HEWN_TRY(prepare(extractor, desc, run->method, error));
     for (int axis = 0; axis < 3; axis++)
         stats->cells[axis] = run->grid.cells[axis] - 2 * run->grid.rim;
-    stats->cell =
-        desc->cell != 0 ? desc->cell : (stats->bounds.hi[0] - stats->bounds.lo[0]) / (double)stats->cells[0];
+    stats->cell = desc->cell != 0 ? desc->cell : (stats->bounds.hi[0] - stats->bounds.lo[0]) / (double)stats->cells[0];
     return hewn_extraction_stage(run, "prepare", run->begin, hewn_clock_now(), 0.02, error);
 }
 

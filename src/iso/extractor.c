@@ -139,21 +139,11 @@ void hewn_extractor_destroy(hewn_extractor **extractor_place)
     if (!extractor)
         return;
     hewn_device *device = extractor->device;
-    hewn_program **programs[] = {&extractor->cull,
-                                 &extractor->signs,
-                                 &extractor->vertices,
-                                 &extractor->clip,
-                                 &extractor->compact,
-                                 &extractor->link,
-                                 &extractor->classify,
-                                 &extractor->spread,
-                                 &extractor->triangles,
-                                 &extractor->choose,
-                                 &extractor->keep_lists,
-                                 &extractor->gather,
-                                 &extractor->suspects.cuts,
-                                 &extractor->suspects.remote,
-                                 &extractor->suspects.find};
+    hewn_program **programs[] = {&extractor->cull,          &extractor->signs,           &extractor->vertices,
+                                 &extractor->clip,          &extractor->compact,         &extractor->link,
+                                 &extractor->classify,      &extractor->spread,          &extractor->triangles,
+                                 &extractor->choose,        &extractor->keep_lists,      &extractor->gather,
+                                 &extractor->suspects.cuts, &extractor->suspects.remote, &extractor->suspects.find};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         hewn_program_destroy(device, programs[i]);
     hewn_mc33_clear(extractor);

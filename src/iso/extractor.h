@@ -84,18 +84,18 @@ hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct
                                    const hewn_region *region, hewn_workspace *workspace, hewn_bricks *out,
                                    hewn_error *error);
 
-/* The same for a part of the grid: the bricks of its own and those that it needs around them, in their order, and memory
- * is taken for what is there, not for what there might be. */
+/* The same for a part of the grid: the bricks of its own and those that it needs around them, in their order, and
+ * memory is taken for what is there, not for what there might be. */
 hewn_result hewn_bricks_cull_part(const hewn_extractor *extractor, const struct hewn_grid *grid,
                                   const hewn_region *region, hewn_workspace *workspace, hewn_bricks *out,
                                   hewn_error *error);
 
-/* What of a surface is a part's own, by number: from the first one up to before the second. The rest is there for what it
- * takes to make that. */
+/* What of a surface is a part's own, by number: from the first one up to before the second. The rest is there for what
+ * it takes to make that. */
 typedef struct hewn_own {
     bool part; /* false: all of it is */
     uint64_t bricks[2], crossings[2], vertices[2], centres[2], triangles[2];
-    const hewn_buffer *bases[3]; /* numbers of bricks' first crossings: those before, own, after; others have none */
+    const hewn_buffer *bases[2]; /* numbers of bricks' first crossings: its own, and those after; others have none */
 } hewn_own;
 
 /* The surface in those bricks, as counts and ranks on the device. */

@@ -75,7 +75,8 @@ static hewn_result narrow_bases(hewn_extraction *run, const hewn_part *part, con
     hewn_buffer *narrow;
     const void *words;
     HEWN_TRY(hewn_workspace_read(&run->workspace, bases, 0, 4 * count, &words, error));
-    HEWN_TRY(hewn_workspace_take(&run->workspace, "crossings of a part", 4 * count, HEWN_BUFFER_UPLOAD, &narrow, error));
+    HEWN_TRY(
+        hewn_workspace_take(&run->workspace, "crossings of a part", 4 * count, HEWN_BUFFER_UPLOAD, &narrow, error));
     const uint32_t *from = words;
     uint32_t *to = narrow->mapped;
     for (uint64_t i = 0; i < count; i++)
@@ -97,13 +98,13 @@ static hewn_result find_own(hewn_extraction *run, hewn_part *part, bool counts_o
     part->named_vertices = surface->vertex_count - surface->centre_count;
     HEWN_TRY(find_range(run, part, crossings, surface->crossing_count, 1, own->crossings, error));
     HEWN_TRY(find_range(run, part, surface->vertex_bases, part->named_vertices, 1, own->vertices, error));
-    HEWN_TRY(find_range(run, part, surface->triangle_bases, surface->triangle_count, dual ? 2 : 1, own->triangles,
-                        error));
+    HEWN_TRY(
+        find_range(run, part, surface->triangle_bases, surface->triangle_count, dual ? 2 : 1, own->triangles, error));
     if (surface->centre_bases)
         HEWN_TRY(find_range(run, part, surface->centre_bases, surface->centre_count, 1, own->centres, error));
-    const uint64_t ends[4] = {0, own->crossings[0], own->crossings[1], surface->crossing_count};
+    const uint64_t ends[3] = {own->crossings[0], own->crossings[1], surface->crossing_count};
     bool listed = hewn_code_is_listed(run->extractor->code);
-    for (int i = 0; i < 3 && listed && !counts_only; i++)
+    for (int i = 0; i < 2 && listed && !counts_only; i++)
         HEWN_TRY(narrow_bases(run, part, crossings, ends[i], ends[i + 1], &own->bases[i], error));
     own->part = true;
     return HEWN_OK;
@@ -137,8 +138,8 @@ hewn_result hewn_part_emit(hewn_extraction *run, hewn_part *part, hewn_buffer bu
     hewn_surface *surface = &part->surface;
     const uint64_t items[3] = {surface->vertex_count, surface->vertex_count, surface->triangle_count};
     for (int i = 0; i < 3; i++)
-        HEWN_TRY(hewn_buffer_create(run->extractor->device, what[i], 12 * items[i], HEWN_BUFFER_DEVICE, &buffers[i],
-                                    error));
+        HEWN_TRY(
+            hewn_buffer_create(run->extractor->device, what[i], 12 * items[i], HEWN_BUFFER_DEVICE, &buffers[i], error));
     if (!hewn_method_is_dual(run->method))
         return hewn_surface_emit(run->extractor, &run->grid, &part->bricks, surface, buffers, &run->workspace, out,
                                  error);
@@ -146,7 +147,6 @@ hewn_result hewn_part_emit(hewn_extraction *run, hewn_part *part, hewn_buffer bu
     uint32_t keep = run->desc->quads ? HEWN_KEEP_NONE : HEWN_KEEP_FANS;
     HEWN_TRY(hewn_dual_emit(run->extractor, &run->grid, &part->bricks, surface, run->method, buffers, &run->workspace,
                             keep, &kept, out, error));
-    return keep == HEWN_KEEP_FANS
-               ? hewn_dual_add_fans(run->extractor, &kept, surface, buffers, &run->workspace, error)
-               : HEWN_OK;
+    return keep == HEWN_KEEP_FANS ? hewn_dual_add_fans(run->extractor, &kept, surface, buffers, &run->workspace, error)
+                                  : HEWN_OK;
 }

@@ -1,4 +1,5 @@
-/* A part of a grid on its way: its bricks and those around them, their signs and counts, and what of that is its own. */
+/* A part of a grid on its way: its bricks and those around them, their signs and counts, and what of that is its own.
+ */
 #ifndef HEWN_SRC_ISO_PART_H
 #define HEWN_SRC_ISO_PART_H
 

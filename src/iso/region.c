@@ -32,21 +32,6 @@ uint32_t hewn_region_number(const hewn_region *region, uint32_t packed)
     return number;
 }
 
-bool hewn_region_is_followed(const hewn_region *region, uint32_t packed)
-{
-    uint32_t brick[3] = {packed & 1023, packed >> 10 & 1023, packed >> 20 & 1023};
-    uint32_t limit[3], side = 1u << 2 * (region->levels - 1);
-    for (int axis = 0; axis < 3; axis++)
-        limit[axis] = region->top[axis] * side;
-    for (uint32_t k = 1; k < 8; k++) {
-        uint32_t x = brick[0] + (k & 1), y = brick[1] + (k >> 1 & 1), z = brick[2] + (k >> 2);
-        if (x < limit[0] && y < limit[1] && z < limit[2] &&
-            hewn_region_number(region, x | y << 10 | z << 20) >= region->end)
-            return true;
-    }
-    return false;
-}
-
 uint32_t hewn_region_end(const hewn_region *whole, uint32_t begin, uint32_t length)
 {
     uint32_t all = whole->end, block = 1u << 6 * (whole->levels - 1), unit = 1;

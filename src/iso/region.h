@@ -1,7 +1,8 @@
 /* Parts of the grid that are extracted one at a time: bricks from one number to another in their order.
  *
  * Bricks are numbered as culling lists them: by blocks of the top level, x fastest, and within a block by its children.
- * So a brick comes after all those that lie no farther than it along each axis. */
+ * So a brick comes after all those that lie no farther than it along each axis. By every method a brick's triangles
+ * name vertices of that brick and of its upper neighbours: never of one before it. */
 #ifndef HEWN_SRC_ISO_REGION_H
 #define HEWN_SRC_ISO_REGION_H
 
@@ -19,9 +20,6 @@ hewn_region hewn_region_whole(const struct hewn_grid *grid);
 
 /* The number of a brick, given by packed coordinates. */
 uint32_t hewn_region_number(const hewn_region *region, uint32_t packed);
-
-/* Whether an upper neighbour of the brick, also across edges and corners, has a number from `end` on. */
-bool hewn_region_is_followed(const hewn_region *region, uint32_t packed);
 
 /* Where a part of about `length` numbers from `begin` on should end, in the order and within `most`: at the largest
  * blocks, rows or layers that fit. Always past `begin`. */

@@ -1,6 +1,6 @@
-/* A mesh in parts. Bricks come in their order, and so do vertices and triangles, so a part's own are runs of the whole's.
- * A first pass over the parts counts vertices; then every brick's first vertex is known, and a second pass can name
- * vertices of other parts. */
+/* A mesh in parts. Bricks come in their order, and so do vertices and triangles, so a part's own are runs of the
+ * whole's. A first pass over the parts counts vertices; then every brick's first vertex is known, and a second pass can
+ * name vertices of other parts. */
 #include <math.h>
 #include <string.h>
 
@@ -17,22 +17,13 @@ typedef struct brick_table {
     size_t count, number_room, base_room;
 } brick_table;
 
-/* Bricks that are done, some of whose vertices triangles of later ones may name. */
-typedef struct edge_brick {
-    uint32_t packed, count;
-    uint64_t first; /* vertex */
-} edge_brick;
-
 typedef struct stream {
     hewn_extraction run;
     const hewn_mesh_sink *sink;
     hewn_region whole;
     brick_table table;
-    edge_brick *edge;
-    size_t edge_count, edge_room;
-    hewn_number_run *open;
-    size_t open_count, open_room;
-    uint64_t crossings, named, triangles;    /* of the whole: of vertices those that bases tell of; no fans' triangles */
+    hewn_number_run open;
+    uint64_t crossings, named, triangles; /* of the whole: of vertices those that bases tell of; no fans' triangles */
     uint64_t done, done_centres, done_capped; /* in the second pass; fans' vertices are centres */
     uint64_t done_triangles, done_fans;
     hewn_box first_suspect_cell; /* lo: coordinates of the first one so far */
@@ -45,8 +36,7 @@ typedef struct stream {
 /* What lies on the host from part to part. */
 static uint64_t kept_bytes(const stream *of)
 {
-    return 4 * (uint64_t)(of->table.number_room + of->table.base_room) + sizeof *of->edge * (uint64_t)of->edge_room +
-           sizeof *of->open * (uint64_t)of->open_room;
+    return 4 * (uint64_t)(of->table.number_room + of->table.base_room);
 }
 
 static uint64_t sink_bytes(const stream *of, uint64_t vertices, uint64_t triangles)
@@ -235,10 +225,10 @@ static hewn_result count_part(stream *of, hewn_part *part, hewn_error *error)
 /* From a part's numbers of vertices to those of the whole. */
 typedef struct naming {
     const hewn_part *part;
-    uint32_t *firsts;      /* the whole's first vertex of each brick; UINT32_MAX: none that this part could name */
-    uint64_t own[2];       /* numbers of the part's own vertices, and what the first becomes */
+    uint32_t *firsts; /* the whole's first vertex of each brick; UINT32_MAX: none that this part could name */
+    uint64_t own[2];  /* numbers of the part's own vertices, and what the first becomes */
     uint64_t own_first;
-    uint64_t extra[2];     /* the same of those in cells or of fans */
+    uint64_t extra[2]; /* the same of those in cells or of fans */
     uint64_t extra_first;
 } naming;
 
@@ -309,50 +299,6 @@ static hewn_result name_all(const naming *names, uint32_t *indices, uint64_t cou
     return lost ? hewn_fail(error, HEWN_INTERNAL, "a triangle names a vertex that no part has") : HEWN_OK;
 }
 
-/* --- what stays open ---------------------------------------------------------------------------------------------- */
-
-static hewn_result add_open(stream *of, uint64_t first, uint64_t count, hewn_error *error)
-{
-    if (count == 0)
-        return HEWN_OK;
-    hewn_number_run *last = of->open_count > 0 ? &of->open[of->open_count - 1] : NULL;
-    if (last && last->first + last->count == first) {
-        last->count += count;
-        return HEWN_OK;
-    }
-    void *items = of->open;
-    HEWN_TRY(hewn_reserve(&items, &of->open_room, of->open_count + 1, sizeof *of->open, error));
-    of->open = items;
-    of->open[of->open_count++] = (hewn_number_run){first, count};
-    return HEWN_OK;
-}
-
-/* Triangles of marching cubes name vertices of their brick and of those after it. Quads also name vertices of bricks
- * before theirs: those of a brick are open until its upper neighbours are done. */
-static hewn_result find_open(stream *of, const hewn_part *part, uint64_t done, hewn_error *error)
-{
-    size_t kept = 0;
-    const uint64_t *own = part->surface.own.bricks;
-    of->open_count = 0;
-    for (size_t i = 0; i < of->edge_count; i++)
-        if (hewn_region_is_followed(&part->region, of->edge[i].packed))
-            of->edge[kept++] = of->edge[i];
-    of->edge_count = kept;
-    for (uint64_t i = own[0]; i < own[1] && hewn_method_is_dual(of->run.method); i++) {
-        uint32_t first = hewn_part_base(part, i), count = hewn_part_base(part, i + 1) - first;
-        if (count == 0 || !hewn_region_is_followed(&part->region, part->packed[i]))
-            continue;
-        void *items = of->edge;
-        HEWN_TRY(hewn_reserve(&items, &of->edge_room, of->edge_count + 1, sizeof *of->edge, error));
-        of->edge = items;
-        of->edge[of->edge_count++] =
-            (edge_brick){part->packed[i], count, of->done + first - part->surface.own.vertices[0]};
-    }
-    for (size_t i = 0; i < of->edge_count; i++)
-        HEWN_TRY(add_open(of, of->edge[i].first, of->edge[i].count, error));
-    return add_open(of, done, of->named - done, error);
-}
-
 /* --- the second pass ---------------------------------------------------------------------------------------------- */
 
 static void add_emission(stream *of, const hewn_emission *emission)
@@ -403,9 +349,10 @@ static hewn_result assemble(stream *of, const hewn_part *part, const naming *nam
     HEWN_TRY(name_all(names, renamed, 3 * (triangles + further), error));
     out->triangles[0] = (hewn_triangle_run){of->done_triangles, triangles, renamed};
     out->triangles[1] = (hewn_triangle_run){of->triangles + of->done_fans, further, renamed + 3 * triangles};
-    HEWN_TRY(find_open(of, part, of->done + vertices, error));
-    out->open = of->open;
-    out->open_count = of->open_count;
+    /* Bricks that are still to come have vertices that triangles so far may name, but no brick has that is done. */
+    of->open = (hewn_number_run){of->done + vertices, of->named - of->done - vertices};
+    out->open = &of->open;
+    out->open_count = of->open.count > 0;
     return HEWN_OK;
 }
 
@@ -510,7 +457,5 @@ hewn_result hewn_extract_parts(hewn_extractor *extractor, const hewn_extract_des
     extractor->device->most_bytes = 0;
     hewn_free(of.table.numbers);
     hewn_free(of.table.bases);
-    hewn_free(of.edge);
-    hewn_free(of.open);
     return result;
 }

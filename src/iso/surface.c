@@ -125,7 +125,7 @@ hewn_own hewn_surface_own(const hewn_surface *surface)
                       .vertices = {0, surface->vertex_count},
                       .centres = {0, surface->centre_count},
                       .triangles = {0, surface->triangle_count},
-                      .bases = {NULL, dual ? surface->crossing_bases : surface->vertex_bases, NULL}};
+                      .bases = {dual ? surface->crossing_bases : surface->vertex_bases}};
 }
 
 void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
@@ -177,7 +177,7 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
     hewn_own own = hewn_surface_own(surface);
     hewn_crossings crossings = {.first = own.crossings[0],
                                 .end = own.crossings[1],
-                                .bases = own.bases[1],
+                                .bases = own.bases[0],
                                 .positions = &buffers[0],
                                 .normals = &buffers[1],
                                 .summary = summary->address};
