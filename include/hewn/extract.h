@@ -44,9 +44,9 @@ typedef struct hewn_extract_desc {
     /* By dual contouring: how far, in scene units, the surface may move where triangles are merged to fewer and larger
      * ones, see docs/extraction.md; 0: all cells are of one size. Not together with `quads`. */
     double adaptive;
-    /* Bytes that a run may have in use at once, of the device and the host together (host memory: what the run itself
-     * and a sink take; not the program, the field and the driver); 0: no limit. A single mesh that does not fit is
-     * HEWN_OUT_OF_DEVICE_MEMORY; hewn_extract_parts() makes the parts as large as fit. */
+    /* Bytes that a run may take at once, of the device and the host together (of the host: what the run itself and a
+     * sink take; not the program, the field, the driver and what they held before); 0: no limit. A single mesh that does
+     * not fit is HEWN_OUT_OF_DEVICE_MEMORY; hewn_extract_parts() makes the parts as large as fit. */
     uint64_t max_memory;
     const hewn_progress *progress;
 } hewn_extract_desc;

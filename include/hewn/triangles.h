@@ -66,7 +66,7 @@ typedef struct hewn_triangle_run {
 } hewn_triangle_run;
 
 /* A part of a mesh. Each vertex and triangle comes once, at the place that it has in the whole; runs may be empty. `open`
- * tells, in ascending order, the vertices that triangles of later parts may still name: no others, but for new ones. */
+ * tells, in ascending order, the vertices that are still to come or that triangles of later parts may still name. */
 typedef struct hewn_mesh_part {
     hewn_vertex_run vertices[2];
     hewn_triangle_run triangles[2];
@@ -78,8 +78,9 @@ typedef struct hewn_mesh_part {
 typedef struct hewn_mesh_sink {
     void *user;
     hewn_result (*take)(void *user, const hewn_mesh_part *part, hewn_error *error);
-    /* Host memory that it will hold while it takes a part of so many, with what it holds already. NULL: none. */
-    uint64_t (*bytes)(void *user, uint64_t vertices, uint64_t triangles);
+    /* Host memory that it will take at the most while it takes a part, with what it holds already; of NULL, what it
+     * holds. NULL: none. */
+    uint64_t (*bytes)(void *user, const hewn_mesh_part *part);
 } hewn_mesh_sink;
 
 /* Certifies a mesh that comes in parts, in memory that grows with the largest part and with what is open. The
@@ -94,7 +95,7 @@ HEWN_API void hewn_certifier_destroy(hewn_certifier **certifier);
 HEWN_API hewn_result hewn_certifier_take(hewn_certifier *certifier, const hewn_mesh_part *part, hewn_error *error);
 
 /* As the sink's, for hewn_certifier_take(). */
-HEWN_API uint64_t hewn_certifier_bytes(const hewn_certifier *certifier, uint64_t vertices, uint64_t triangles);
+HEWN_API uint64_t hewn_certifier_bytes(const hewn_certifier *certifier, const hewn_mesh_part *part);
 
 /* After the last part. HEWN_INVALID_ARGUMENT where vertices are missing or open. `max_residual` is NaN. */
 HEWN_API hewn_result hewn_certifier_finish(hewn_certifier *certifier, hewn_certificate *out, hewn_error *error);

@@ -27,6 +27,8 @@ typedef struct stream {
     uint64_t done, done_centres, done_capped; /* in the second pass; fans' vertices are centres */
     uint64_t done_triangles, done_fans;
     hewn_box first_suspect_cell; /* lo: coordinates of the first one so far */
+    uint64_t device_before;      /* bytes that the device held before the run: they do not count */
+    uint64_t host;               /* bytes that the host was reckoned to take when the device was last limited */
     double share;                /* of the budget that the last part took */
     bool handed;                 /* the sink has the last part */
 } stream;
@@ -39,23 +41,24 @@ static uint64_t kept_bytes(const stream *of)
     return 4 * (uint64_t)(of->table.number_room + of->table.base_room);
 }
 
-static uint64_t sink_bytes(const stream *of, uint64_t vertices, uint64_t triangles)
+static uint64_t sink_bytes(const stream *of, const hewn_mesh_part *part)
 {
-    return of->sink->bytes ? of->sink->bytes(of->sink->user, vertices, triangles) : 0;
+    return of->sink->bytes ? of->sink->bytes(of->sink->user, part) : 0;
 }
 
-/* Leaves the device what the host does not take. At least a byte: 0 is no limit. */
-static void limit_device(const stream *of, uint64_t host_bytes)
+/* Leaves the device what the host does not take. */
+static void limit_device(stream *of, uint64_t host)
 {
     uint64_t most = of->run.desc->max_memory;
-    hewn_device *device = of->run.extractor->device;
-    device->most_bytes = most == 0 ? 0 : most > host_bytes ? most - host_bytes : 1;
+    of->host = host;
+    if (most > 0) /* at least a byte: 0 is no limit */
+        of->run.extractor->device->most_bytes = of->device_before + (most > host ? most - host : 1);
 }
 
 /* Notes what was in use at the most since `device->peak_bytes` was last set, with so much on the host. */
 static void note_peak(stream *of, uint64_t host_bytes)
 {
-    uint64_t peak = of->run.extractor->device->peak_bytes + host_bytes;
+    uint64_t peak = of->run.extractor->device->peak_bytes - of->device_before + host_bytes;
     hewn_extract_stats *stats = of->run.stats;
     stats->peak_memory = peak > stats->peak_memory ? peak : stats->peak_memory;
     if (of->run.desc->max_memory > 0)
@@ -75,7 +78,7 @@ static hewn_result try_part(stream *of, uint32_t begin, uint32_t end, bool count
     region.begin = begin;
     region.end = end;
     hewn_part part;
-    uint64_t peak = device->peak_bytes, host = kept_bytes(of) + sink_bytes(of, 0, 0);
+    uint64_t peak = device->peak_bytes, host = kept_bytes(of) + sink_bytes(of, NULL);
     device->peak_bytes = device->bytes;
     device->refused_bytes = 0;
     of->share = 0;
@@ -104,10 +107,10 @@ static hewn_result fail_least(const stream *of, hewn_result result, hewn_error *
     const hewn_device *device = of->run.extractor->device;
     if (result != HEWN_OUT_OF_DEVICE_MEMORY || device->refused_bytes == 0 || of->handed)
         return result;
-    uint64_t most = of->run.desc->max_memory, host = most - (device->most_bytes > 1 ? device->most_bytes : 0);
-    return hewn_fail(error, result,
-                     "the least part of this mesh needs at least %llu bytes, more than the %llu that are allowed",
-                     (unsigned long long)(device->refused_bytes + host), (unsigned long long)most);
+    uint64_t most = of->run.desc->max_memory;
+    return hewn_fail(
+        error, result, "the least part of this mesh needs at least %llu bytes, more than the %llu that are allowed",
+        (unsigned long long)(device->refused_bytes - of->device_before + of->host), (unsigned long long)most);
 }
 
 /* The number of the brick before whose first vertex lie `most` more than before `begin`. */
@@ -146,10 +149,10 @@ static hewn_result go_over(stream *of, const char *stage, bool counts_only, uint
         }
         if (result != HEWN_OK)
             return fail_least(of, result, error);
-        double factor = of->share > 0 ? fmin(4, 0.85 / of->share) : 1;
+        double factor = of->share > 0 ? fmin(2, 0.8 / of->share) : 1;
         length = (uint64_t)fmax(1, fmin((double)of->whole.end, factor * (double)(end - begin)));
         vertices = vertices > 0 ? (uint64_t)fmax(1, factor * (double)vertices) : 0;
-        of->run.stats->parts += counts_only ? 0 : 1;
+        of->run.stats->parts += of->handed;
         begin = end;
     }
     return HEWN_OK;
@@ -207,7 +210,7 @@ static hewn_result count_part(stream *of, hewn_part *part, hewn_error *error)
     if (bricks == 0)
         return HEWN_OK;
     HEWN_TRY(look_between(of, part, error));
-    note_peak(of, kept_bytes(of) + sink_bytes(of, 0, 0) + 4 * (uint64_t)part->bricks.count);
+    note_peak(of, kept_bytes(of) + sink_bytes(of, NULL) + 4 * (uint64_t)part->bricks.count);
     HEWN_TRY(add_to_table(of, part, error));
     of->run.stats->bricks_active += bricks;
     of->run.stats->cells_visited += 512 * bricks;
@@ -358,19 +361,19 @@ static hewn_result assemble(stream *of, const hewn_part *part, const naming *nam
 
 /* The last moment to find that a part is too large: what the device no longer needs is given back before the sink takes
  * memory. */
-static hewn_result hand_over(stream *of, const hewn_mesh_part *given, const hewn_buffer *buffer, hewn_error *error)
+static hewn_result hand_over(stream *of, const hewn_mesh_part *given, uint64_t bricks, const hewn_buffer *buffer,
+                             hewn_error *error)
 {
     hewn_device *device = of->run.extractor->device;
-    uint64_t vertices = given->vertices[0].count + given->vertices[1].count, most = of->run.desc->max_memory;
-    uint64_t triangles = given->triangles[0].count + given->triangles[1].count;
+    uint64_t most = of->run.desc->max_memory;
     if (buffer->mapped) /* else the part lies in the workspace */
         hewn_workspace_clear(&of->run.workspace);
-    uint64_t host = kept_bytes(of) + sink_bytes(of, vertices, triangles);
-    if (most > 0 && device->bytes + host > most) {
-        device->refused_bytes = device->bytes + host;
-        device->most_bytes = most;
+    uint64_t host = kept_bytes(of) + sink_bytes(of, given) + 4 * bricks;
+    if (most > 0 && device->bytes - of->device_before + host > most) {
+        device->refused_bytes = device->bytes;
+        of->host = host;
         return hewn_fail(error, HEWN_OUT_OF_DEVICE_MEMORY, "a part of %llu triangles is too large",
-                         (unsigned long long)triangles);
+                         (unsigned long long)given->triangles[0].count);
     }
     device->peak_bytes = device->bytes;
     note_peak(of, host);
@@ -385,7 +388,7 @@ static hewn_result hand_over(stream *of, const hewn_mesh_part *given, const hewn
 
 static hewn_result emit_into(stream *of, hewn_part *part, hewn_buffer buffers[3], hewn_error *error)
 {
-    uint64_t host = kept_bytes(of) + 8 * (uint64_t)part->bricks.count + sink_bytes(of, 0, 0);
+    uint64_t host = kept_bytes(of) + 8 * (uint64_t)part->bricks.count + sink_bytes(of, NULL);
     hewn_emission emission = {0};
     hewn_mesh_part given = {0};
     naming names;
@@ -396,7 +399,7 @@ static hewn_result emit_into(stream *of, hewn_part *part, hewn_buffer buffers[3]
     hewn_free(names.firsts);
     note_peak(of, host);
     if (result == HEWN_OK)
-        result = hand_over(of, &given, &buffers[0], error);
+        result = hand_over(of, &given, part->bricks.count, &buffers[0], error);
     if (result == HEWN_OK) {
         add_emission(of, &emission);
         of->run.stats->fans += part->surface.fan_count;
@@ -453,6 +456,7 @@ hewn_result hewn_extract_parts(hewn_extractor *extractor, const hewn_extract_des
                          "merging triangles to a tolerance needs the whole mesh in memory; it cannot be made in parts");
     HEWN_TRY(hewn_extraction_begin(extractor, desc, stats ? stats : &unwanted, &of.run, error));
     of.whole = hewn_region_whole(&of.run.grid);
+    of.device_before = extractor->device->bytes;
     hewn_result result = run_passes(&of, error);
     extractor->device->most_bytes = 0;
     hewn_free(of.table.numbers);

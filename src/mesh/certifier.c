@@ -1,6 +1,6 @@
-/* The certificate of a mesh that comes in parts. A vertex is examined when no later face can name it: then all its faces
- * are there. Faces stay as long as one of their vertices is open or has not come, and their vertices with them; so what
- * is kept from part to part is the seam between what has come and what is to come. */
+/* The certificate of a mesh that comes in parts. A vertex is examined when no later face can name it: then all its
+ * faces are there. Faces stay as long as one of their vertices is open or has not come, and their vertices with them;
+ * so what is kept from part to part is the seam between what has come and what is to come. */
 #include <math.h>
 #include <string.h>
 
@@ -379,9 +379,8 @@ static seam_vertex seam_vertex_of(const part_check *of, uint32_t number, uint32_
     uint32_t rank = of->ranks[place];
     const float *position = position_at(of, place);
     seam_vertex vertex = {.number = number,
-                          .label = hewn_star_length(&of->stars, rank) > 0
-                                       ? of->labels[hewn_trees_root(of->trees, rank)]
-                                       : HEWN_NONE,
+                          .label = hewn_star_length(&of->stars, rank) > 0 ? of->labels[hewn_trees_root(of->trees, rank)]
+                                                                          : HEWN_NONE,
                           .known = position != NULL,
                           .examined = rank < of->settled};
     if (position)
@@ -389,61 +388,58 @@ static seam_vertex seam_vertex_of(const part_check *of, uint32_t number, uint32_
     return vertex;
 }
 
-typedef struct next_seam {
-    seam_vertex *vertices;
-    seam_face *faces;
-    size_t vertex_count, vertex_room, face_count, face_room;
-} next_seam;
-
-/* `taken` marks the ranks that the next seam has. */
-static hewn_result keep_face(part_check *of, uint64_t face, uint8_t *taken, next_seam *next, hewn_error *error)
+/* Counts what the next seam will have; `taken` marks the ranks of its vertices. */
+static void count_kept(const part_check *of, uint8_t *taken, size_t *vertices, size_t *faces)
 {
-    const uint32_t *corners = face_at(of, face);
-    void *items = next->faces;
-    HEWN_TRY(hewn_reserve(&items, &next->face_room, next->face_count + 1, sizeof *next->faces, error));
-    next->faces = items;
-    next->faces[next->face_count++] =
-        (seam_face){{corners[0], corners[1], corners[2]}, of->measured[face]};
-    for (int k = 0; k < 3; k++) {
-        uint32_t rank = of->corners[3 * face + (uint64_t)k], place;
-        if (taken[rank])
+    *vertices = *faces = 0;
+    for (uint64_t f = 0; f < of->face_count; f++) {
+        if (!is_kept(of, f))
             continue;
-        taken[rank] = 1;
-        HEWN_TRY(place_of(of, corners[k], &place, error));
-        items = next->vertices;
-        HEWN_TRY(hewn_reserve(&items, &next->vertex_room, next->vertex_count + 1, sizeof *next->vertices, error));
-        next->vertices = items;
-        next->vertices[next->vertex_count++] = seam_vertex_of(of, corners[k], place);
+        ++*faces;
+        for (uint64_t c = 3 * f; c < 3 * f + 3; c++) {
+            *vertices += !taken[of->corners[c]];
+            taken[of->corners[c]] = 1;
+        }
+    }
+}
+
+/* The marks go as the vertices get their places in the seam. */
+static hewn_result fill_seam(part_check *of, uint8_t *taken, hewn_certifier *next, hewn_error *error)
+{
+    for (uint64_t f = 0; f < of->face_count; f++) {
+        if (!is_kept(of, f))
+            continue;
+        const uint32_t *corners = face_at(of, f);
+        next->faces[next->face_count++] = (seam_face){{corners[0], corners[1], corners[2]}, of->measured[f]};
+        for (uint64_t k = 0; k < 3; k++) {
+            uint32_t rank = of->corners[3 * f + k], place;
+            if (!taken[rank])
+                continue;
+            taken[rank] = 0;
+            HEWN_TRY(place_of(of, corners[k], &place, error));
+            next->vertices[next->vertex_count++] = seam_vertex_of(of, corners[k], place);
+        }
     }
     return HEWN_OK;
 }
 
 static hewn_result keep_seam(part_check *of, hewn_error *error)
 {
-    hewn_certifier *all = of->all;
-    next_seam next = {0};
-    hewn_result result = HEWN_OK;
+    hewn_certifier *all = of->all, next = *all;
     uint8_t *taken = hewn_alloc_zero(of->place_count, sizeof *taken);
     if (!taken)
         return fail_memory(error);
-    for (uint64_t f = 0; f < of->face_count && result == HEWN_OK; f++)
-        if (is_kept(of, f))
-            result = keep_face(of, f, taken, &next, error);
+    count_kept(of, taken, &next.vertex_room, &next.face_room);
+    next.vertex_count = next.face_count = 0;
+    next.vertices = hewn_alloc(next.vertex_room, sizeof *next.vertices);
+    next.faces = hewn_alloc(next.face_room, sizeof *next.faces);
+    hewn_result result = next.vertices && next.faces ? fill_seam(of, taken, &next, error) : fail_memory(error);
     hewn_free(taken);
-    if (result != HEWN_OK) {
-        hewn_free(next.vertices);
-        hewn_free(next.faces);
-        return result;
-    }
-    hewn_free(all->vertices);
-    hewn_free(all->faces);
-    all->vertices = next.vertices;
-    all->vertex_count = next.vertex_count;
-    all->vertex_room = next.vertex_room;
-    all->faces = next.faces;
-    all->face_count = next.face_count;
-    all->face_room = next.face_room;
-    return HEWN_OK;
+    hewn_free(result == HEWN_OK ? all->vertices : next.vertices);
+    hewn_free(result == HEWN_OK ? all->faces : next.faces);
+    if (result == HEWN_OK)
+        *all = next;
+    return result;
 }
 
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
@@ -511,15 +507,34 @@ void hewn_certifier_destroy(hewn_certifier **certifier)
     *certifier = NULL;
 }
 
-/* A vertex has a rank, a parent, a label, a mark and the start of its row; a face its corners twice and a mark. What is
- * kept is there once more while the next seam is made, which grows by doubling. */
-uint64_t hewn_certifier_bytes(const hewn_certifier *certifier, uint64_t vertices, uint64_t triangles)
+/* Faces that name open vertices: those that the seam will have, but for what is kept already. */
+static uint64_t count_open(const hewn_mesh_part *part)
 {
-    uint64_t kept_vertices = certifier->vertex_count, kept_faces = certifier->face_count;
+    uint64_t open = 0;
+    for (int i = 0; i < 2 && part->open_count > 0; i++) {
+        const hewn_triangle_run *run = &part->triangles[i];
+#pragma omp parallel for schedule(static) reduction(+ : open) if (run->count >= HEWN_CHECK_ALONE)
+        for (uint64_t t = 0; t < run->count; t++) {
+            const uint32_t *corner = run->indices + 3 * t;
+            open += is_open(part, corner[0]) || is_open(part, corner[1]) || is_open(part, corner[2]);
+        }
+    }
+    return open;
+}
+
+/* A vertex has a rank, a parent, a label, a mark and the start of its row; a face its corners twice and a mark. The
+ * seam is there twice at the end, and while it grows its vertices are there three times; a slot is at most 24 bytes a
+ * vertex, and half of that again while slots are moved. */
+uint64_t hewn_certifier_bytes(const hewn_certifier *certifier, const hewn_mesh_part *part)
+{
     uint64_t kept = certifier->vertex_room * sizeof(seam_vertex) + certifier->face_room * sizeof(seam_face);
-    if (vertices + triangles == 0)
-        return kept;
-    return 3 * kept + 17 * (vertices + kept_vertices) + 25 * (triangles + kept_faces) + 16 * kept_vertices;
+    if (!part)
+        return kept + sizeof *certifier;
+    uint64_t open = count_open(part), seam = certifier->vertex_count + open + open / 2 + 64;
+    uint64_t vertices = part->vertices[0].count + part->vertices[1].count;
+    uint64_t faces = part->triangles[0].count + part->triangles[1].count;
+    return kept + sizeof *certifier + 3 * sizeof(seam_vertex) * seam + 36 * seam + 6144 + sizeof(seam_face) * open +
+           17 * (vertices + seam) + 25 * (faces + certifier->face_count) + 4 * (uint64_t)certifier->labels;
 }
 
 hewn_result hewn_certifier_finish(hewn_certifier *certifier, hewn_certificate *out, hewn_error *error)

@@ -183,7 +183,8 @@ static hewn_result certify(mesh_job *job, hewn_error *error)
     certificate->max_residual = job->report->extraction.max_residual;
     job->report->vertices = job->triangles.vertex_count;
     job->report->faces = job->triangles.triangle_count / (job->desc->quads ? 2 : 1);
-    hewn_report_add_stage(job->report, "certify", begin, seconds_since(job->began));
+    if (job->desc->max_memory == 0)
+        hewn_report_add_stage(job->report, "certify", begin, seconds_since(job->began));
     if ((certificate->closed || job->desc->open) && certificate->manifold && certificate->oriented)
         return HEWN_OK;
     return hewn_fail(

@@ -12,10 +12,10 @@ static hewn_result take(void *user, const hewn_mesh_part *part, hewn_error *erro
     return hewn_spool_take(parts->spool, part, error);
 }
 
-static uint64_t bytes(void *user, uint64_t vertices, uint64_t triangles)
+static uint64_t bytes(void *user, const hewn_mesh_part *part)
 {
     const hewn_mesh_parts *parts = user;
-    return hewn_certifier_bytes(parts->certifier, vertices, triangles);
+    return hewn_certifier_bytes(parts->certifier, part);
 }
 
 hewn_result hewn_mesh_parts_make(hewn_mesh_parts *parts, hewn_extractor *extractor, const hewn_extract_desc *desc,
