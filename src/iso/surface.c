@@ -164,8 +164,9 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
                               hewn_emission *out, hewn_error *error)
 {
     hewn_buffer *summary, *results;
-    HEWN_TRY(hewn_workspace_take(workspace, "summary", 4 * HEWN_SUMMARY_WORDS, HEWN_BUFFER_DEVICE, &summary, error));
-    HEWN_TRY(hewn_workspace_take(workspace, "summary", 4 * HEWN_SUMMARY_WORDS, HEWN_BUFFER_READBACK, &results, error));
+    uint64_t bytes = 2 * 4 * HEWN_SUMMARY_WORDS; /* what is not a part's own is not summed up with it */
+    HEWN_TRY(hewn_workspace_take(workspace, "summary", bytes, HEWN_BUFFER_DEVICE, &summary, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "summary", bytes, HEWN_BUFFER_READBACK, &results, error));
     hewn_commands *commands;
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, summary, 0, summary->size, 0);
@@ -182,6 +183,13 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
                                 .normals = &buffers[1],
                                 .summary = summary->address};
     hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
+    if (own.centres[1] > own.centres[0]) { /* vertices in cells are means of those around, also of later bricks */
+        crossings.first = own.crossings[1];
+        crossings.end = surface->crossing_count;
+        crossings.bases = own.bases[1];
+        crossings.summary += (uint64_t)4 * HEWN_SUMMARY_WORDS;
+        hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
+    }
     hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
     uint64_t count = own.triangles[1] - own.triangles[0];
     struct hewn_triangle_push triangles = {.count = (uint32_t)count,
