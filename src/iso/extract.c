@@ -313,7 +313,8 @@ hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *des
     hewn_extraction run;
     *out = (hewn_triangles){0};
     HEWN_TRY(hewn_extraction_begin(extractor, desc, stats ? stats : &unwanted, &run, error));
-    extractor->device->most_bytes = desc->max_memory > 0 ? extractor->device->bytes + desc->max_memory : 0;
+    bool limited = desc->max_memory > 0 && desc->max_memory <= INT64_MAX;
+    extractor->device->most_bytes = limited ? extractor->device->bytes + desc->max_memory : 0;
     hewn_result result = run_stages(&run, out, error);
     hewn_workspace_clear(&run.workspace);
     extractor->device->most_bytes = 0;

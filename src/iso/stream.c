@@ -30,7 +30,7 @@ typedef struct stream {
     uint64_t device_before;      /* bytes that the device held before the run: they do not count */
     uint64_t host;               /* bytes that the host was reckoned to take when the device was last limited */
     double share;                /* of the budget that the last part took */
-    bool handed;                 /* the sink has the last part */
+    bool decided;                /* no smaller part would have fared better than the last one */
 } stream;
 
 /* --- memory ------------------------------------------------------------------------------------------------------- */
@@ -51,7 +51,9 @@ static void limit_device(stream *of, uint64_t host)
 {
     uint64_t most = of->run.desc->max_memory;
     of->host = host;
-    if (most > 0) /* at least a byte: 0 is no limit */
+    if (most > INT64_MAX) /* as good as none */
+        of->run.extractor->device->most_bytes = 0;
+    else if (most > 0) /* at least a byte: 0 is no limit */
         of->run.extractor->device->most_bytes = of->device_before + (most > host ? most - host : 1);
 }
 
@@ -82,7 +84,7 @@ static hewn_result try_part(stream *of, uint32_t begin, uint32_t end, bool count
     device->peak_bytes = device->bytes;
     device->refused_bytes = 0;
     of->share = 0;
-    of->handed = false;
+    of->decided = false;
     limit_device(of, host);
     hewn_result result = hewn_part_open(&of->run, &region, counts_only, &part, error);
     if (result == HEWN_OK) {
@@ -99,13 +101,13 @@ static hewn_result try_part(stream *of, uint32_t begin, uint32_t end, bool count
 static bool was_too_large(const stream *of, hewn_result result)
 {
     bool refused = result == HEWN_OUT_OF_DEVICE_MEMORY && of->run.extractor->device->refused_bytes > 0;
-    return !of->handed && (refused || result == HEWN_LIMIT);
+    return !of->decided && (refused || result == HEWN_LIMIT);
 }
 
 static hewn_result fail_least(const stream *of, hewn_result result, hewn_error *error)
 {
     const hewn_device *device = of->run.extractor->device;
-    if (result != HEWN_OUT_OF_DEVICE_MEMORY || device->refused_bytes == 0 || of->handed)
+    if (result != HEWN_OUT_OF_DEVICE_MEMORY || device->refused_bytes == 0 || of->decided)
         return result;
     uint64_t most = of->run.desc->max_memory;
     return hewn_fail(
@@ -152,7 +154,6 @@ static hewn_result go_over(stream *of, const char *stage, bool counts_only, uint
         double factor = of->share > 0 ? fmin(2, 0.8 / of->share) : 1;
         length = (uint64_t)fmax(1, fmin((double)of->whole.end, factor * (double)(end - begin)));
         vertices = vertices > 0 ? (uint64_t)fmax(1, factor * (double)vertices) : 0;
-        of->run.stats->parts += of->handed;
         begin = end;
     }
     return HEWN_OK;
@@ -203,6 +204,15 @@ static hewn_result add_to_table(stream *of, const hewn_part *part, hewn_error *e
     return HEWN_OK;
 }
 
+static hewn_result check_vertices(stream *of, uint64_t vertices, hewn_error *error)
+{
+    if (vertices < UINT32_MAX)
+        return HEWN_OK;
+    of->decided = true;
+    return hewn_fail(error, HEWN_LIMIT,
+                     "this mesh has more than the 4294967294 vertices that indices can name; use larger cells");
+}
+
 static hewn_result count_part(stream *of, hewn_part *part, hewn_error *error)
 {
     const hewn_own *own = &part->surface.own;
@@ -217,10 +227,7 @@ static hewn_result count_part(stream *of, hewn_part *part, hewn_error *error)
     of->crossings += own->crossings[1] - own->crossings[0];
     of->named += own->vertices[1] - own->vertices[0];
     of->triangles += own->triangles[1] - own->triangles[0];
-    if (of->named >= UINT32_MAX)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "this mesh has more than the 4294967294 vertices that indices can name; use larger cells");
-    return HEWN_OK;
+    return check_vertices(of, of->named, error);
 }
 
 /* --- names of vertices -------------------------------------------------------------------------------------------- */
@@ -344,6 +351,7 @@ static hewn_result assemble(stream *of, const hewn_part *part, const naming *nam
     uint64_t vertices = own->vertices[1] - own->vertices[0], extra = names->extra[1] - names->extra[0];
     uint64_t triangles = own->triangles[1] - own->triangles[0], further = 2 * (uint64_t)part->surface.fan_count;
     const void *indices;
+    HEWN_TRY(check_vertices(of, names->extra_first + extra, error));
     HEWN_TRY(read_run(of, buffers, own->vertices[0], of->done, vertices, &out->vertices[0], error));
     HEWN_TRY(read_run(of, buffers, names->extra[0], names->extra_first, extra, &out->vertices[1], error));
     HEWN_TRY(hewn_workspace_read(&of->run.workspace, &buffers[2], 12 * own->triangles[0], 12 * (triangles + further),
@@ -377,7 +385,8 @@ static hewn_result hand_over(stream *of, const hewn_mesh_part *given, uint64_t b
     }
     device->peak_bytes = device->bytes;
     note_peak(of, host);
-    of->handed = true;
+    of->decided = true;
+    of->run.stats->parts++;
     HEWN_TRY(of->sink->take(of->sink->user, given, error));
     of->done += given->vertices[0].count;
     of->done_centres += given->vertices[1].count;

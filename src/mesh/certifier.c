@@ -11,7 +11,7 @@
 /* A vertex of the seam. */
 typedef struct seam_vertex {
     uint32_t number;
-    uint32_t label; /* of its component; HEWN_NONE where no face with sides names it yet */
+    uint32_t label; /* of its component; HEWN_NONE where it is settled or no face with sides names it yet */
     float position[3];
     bool known;    /* the position */
     bool examined; /* in an earlier part */
@@ -374,13 +374,14 @@ static bool is_kept(const part_check *of, uint64_t face)
     return !of->measured[face] || (open && !hewn_triangle_collapsed(rank));
 }
 
-static seam_vertex seam_vertex_of(const part_check *of, uint32_t number, uint32_t place)
+static seam_vertex seam_vertex_of(const part_check *of, uint32_t place)
 {
     uint32_t rank = of->ranks[place];
     const float *position = position_at(of, place);
-    seam_vertex vertex = {.number = number,
-                          .label = hewn_star_length(&of->stars, rank) > 0 ? of->labels[hewn_trees_root(of->trees, rank)]
-                                                                          : HEWN_NONE,
+    /* Only open vertices tell of their component: all faces around them are in the seam, and others join no more. */
+    bool joins = rank >= of->settled && hewn_star_length(&of->stars, rank) > 0;
+    seam_vertex vertex = {.number = number_at(of, place),
+                          .label = joins ? of->labels[hewn_trees_root(of->trees, rank)] : HEWN_NONE,
                           .known = position != NULL,
                           .examined = rank < of->settled};
     if (position)
@@ -388,10 +389,21 @@ static seam_vertex seam_vertex_of(const part_check *of, uint32_t number, uint32_
     return vertex;
 }
 
+/* Open vertices are kept whether or not faces name them yet. */
+static bool is_waiting(const part_check *of, uint32_t place)
+{
+    return of->ranks[place] >= of->settled && !has_moved(of, place);
+}
+
 /* Counts what the next seam will have; `taken` marks the ranks of its vertices. */
 static void count_kept(const part_check *of, uint8_t *taken, size_t *vertices, size_t *faces)
 {
     *vertices = *faces = 0;
+    for (uint64_t i = 0; i < of->place_count; i++)
+        if (is_waiting(of, (uint32_t)i)) {
+            taken[of->ranks[i]] = 1;
+            ++*vertices;
+        }
     for (uint64_t f = 0; f < of->face_count; f++) {
         if (!is_kept(of, f))
             continue;
@@ -403,21 +415,28 @@ static void count_kept(const part_check *of, uint8_t *taken, size_t *vertices, s
     }
 }
 
+static void keep_vertex(const part_check *of, uint32_t place, uint8_t *taken, hewn_certifier *next)
+{
+    if (taken[of->ranks[place]])
+        next->vertices[next->vertex_count++] = seam_vertex_of(of, place);
+    taken[of->ranks[place]] = 0;
+}
+
 /* The marks go as the vertices get their places in the seam. */
 static hewn_result fill_seam(part_check *of, uint8_t *taken, hewn_certifier *next, hewn_error *error)
 {
+    for (uint64_t i = 0; i < of->place_count; i++)
+        if (is_waiting(of, (uint32_t)i))
+            keep_vertex(of, (uint32_t)i, taken, next);
     for (uint64_t f = 0; f < of->face_count; f++) {
         if (!is_kept(of, f))
             continue;
         const uint32_t *corners = face_at(of, f);
         next->faces[next->face_count++] = (seam_face){{corners[0], corners[1], corners[2]}, of->measured[f]};
         for (uint64_t k = 0; k < 3; k++) {
-            uint32_t rank = of->corners[3 * f + k], place;
-            if (!taken[rank])
-                continue;
-            taken[rank] = 0;
+            uint32_t place;
             HEWN_TRY(place_of(of, corners[k], &place, error));
-            next->vertices[next->vertex_count++] = seam_vertex_of(of, corners[k], place);
+            keep_vertex(of, place, taken, next);
         }
     }
     return HEWN_OK;
@@ -522,6 +541,21 @@ static uint64_t count_open(const hewn_mesh_part *part)
     return open;
 }
 
+/* Vertices of the part that are open from the beginning. */
+static uint64_t count_waiting(const hewn_mesh_part *part)
+{
+    uint64_t waiting = 0;
+    for (uint64_t i = 0; i < part->open_count; i++)
+        for (int k = 0; k < 2; k++) {
+            uint64_t first = part->vertices[k].first, end = first + part->vertices[k].count;
+            uint64_t low = part->open[i].first, high = low + part->open[i].count;
+            low = low > first ? low : first;
+            high = high < end ? high : end;
+            waiting += high > low ? high - low : 0;
+        }
+    return waiting;
+}
+
 /* A vertex has a rank, a parent, a label, a mark and the start of its row; a face its corners twice and a mark. The
  * seam is there twice at the end, and while it grows its vertices are there three times; a slot is at most 24 bytes a
  * vertex, and half of that again while slots are moved. */
@@ -530,7 +564,7 @@ uint64_t hewn_certifier_bytes(const hewn_certifier *certifier, const hewn_mesh_p
     uint64_t kept = certifier->vertex_room * sizeof(seam_vertex) + certifier->face_room * sizeof(seam_face);
     if (!part)
         return kept + sizeof *certifier;
-    uint64_t open = count_open(part), seam = certifier->vertex_count + open + open / 2 + 64;
+    uint64_t open = count_open(part), seam = certifier->vertex_count + open + open / 2 + count_waiting(part) + 64;
     uint64_t vertices = part->vertices[0].count + part->vertices[1].count;
     uint64_t faces = part->triangles[0].count + part->triangles[1].count;
     return kept + sizeof *certifier + 3 * sizeof(seam_vertex) * seam + 36 * seam + 6144 + sizeof(seam_face) * open +
@@ -540,9 +574,10 @@ uint64_t hewn_certifier_bytes(const hewn_certifier *certifier, const hewn_mesh_p
 hewn_result hewn_certifier_finish(hewn_certifier *certifier, hewn_certificate *out, hewn_error *error)
 {
     *out = (hewn_certificate){0};
-    if (certifier->face_count > 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh is not complete: vertex %u is open",
-                         certifier->vertices[0].number);
+    if (certifier->vertex_count > 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "the mesh is not complete: %llu vertices have not come or are open, as vertex %u",
+                         (unsigned long long)certifier->vertex_count, certifier->vertices[0].number);
     if (certifier->all_faces > 0 && !certifier->names_origin)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "no face names vertex 0");
     bool empty = certifier->all_faces == 0;

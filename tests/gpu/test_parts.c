@@ -578,7 +578,7 @@ static void test_memory_runs_out(void **state)
 {
     (void)state;
     for (size_t m = 0; m < METHODS; m++) {
-        hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 40, .method = methods[m]};
+        hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 32, .method = methods[m]};
         subject made = make_subject(make_part, HEWN_EVALUATION_STRAIGHT);
         whole expected = make_whole(&made, &desc);
         uint64_t before = device->bytes, count = 0;
@@ -596,7 +596,7 @@ static void test_memory_runs_out(void **state)
             assert_true(result == HEWN_OK || error.message[0] != '\0');
             assert_int_equal(device->bytes, before);
             free_collector(&to);
-            count += gpu_test_long() || count < 100 ? 1 : 7;
+            count += gpu_test_long() || count < 60 ? 1 : 13;
         }
         assert_int_equal(result, HEWN_OK);
         assert_true(count > 60);
