@@ -54,7 +54,7 @@ hewn_result hewn_size_parse(const char *text, const char *option, uint64_t *out,
                          "%s takes a whole number of bytes, with K, M or G after it for more, not '%s'", option, text);
     unsigned shift = unit ? 10 * (unsigned)(unit - units + 1) : 0;
     unsigned long long value = strtoull(text, NULL, 10); /* ULLONG_MAX where it is more */
-    if (value == 0 || value > INT64_MAX >> shift)
+    if (value == 0 || value > (uint64_t)INT64_MAX >> shift)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s makes no sense with %s bytes", option, text);
     *out = (uint64_t)value << shift;
     return HEWN_OK;
