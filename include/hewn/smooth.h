@@ -13,8 +13,8 @@ typedef enum hewn_smooth_method {
     HEWN_SMOOTH_LAPLACIAN, /* to the mean of the neighbours: shrinks */
     HEWN_SMOOTH_COTAN,     /* mean curvature flow in small steps (Meyer, Desbrun, Schroeder, Barr 2003) */
     HEWN_SMOOTH_IMPLICIT,  /* the same by backward Euler (Desbrun, Meyer, Schroeder, Barr 1999): any step is stable */
-    HEWN_SMOOTH_BILATERAL, /* normals that agree are averaged, then vertices follow (Zheng, Fu, Au, Tai 2011; Sun,
-                              Rosin, Martin, Langbein 2007): sharp edges stay sharp */
+    HEWN_SMOOTH_BILATERAL, /* normals that agree are averaged, and vertices follow (Zheng, Fu, Au, Tai 2011; Zhang and
+                              others 2015; Sun, Rosin, Martin, Langbein 2007): sharp edges stay sharp */
     HEWN_SMOOTH_HC,        /* Vollmer, Mencl, Mueller 1999, 'Improved Laplacian smoothing of noisy surface meshes' */
     HEWN_SMOOTH_COUNT
 } hewn_smooth_method;
@@ -23,9 +23,17 @@ typedef enum hewn_smooth_method {
 HEWN_API const char *hewn_smooth_method_name(hewn_smooth_method method);
 HEWN_API bool hewn_smooth_method_find(const char *name, hewn_smooth_method *out);
 
+/* Whether closed, oriented components get the volume back that they had, by an offset along their normals of what is
+ * free to move. */
+typedef enum hewn_smooth_volume {
+    HEWN_SMOOTH_VOLUME_DEFAULT, /* kept by TAUBIN, which is meant to keep shapes as large as they are; else free */
+    HEWN_SMOOTH_VOLUME_KEPT,
+    HEWN_SMOOTH_VOLUME_FREE
+} hewn_smooth_volume;
+
 /* What to do; zero everywhere smooths by ten steps of Taubin's method.
  *
- * iterations: steps; 0 stands for 10, for one step of IMPLICIT, and for 6 of BILATERAL.
+ * iterations: steps; 0 stands for 10, for one step of IMPLICIT, and for 8 of BILATERAL.
  *
  * strength (TAUBIN, LAPLACIAN): the share of the way to the mean of its neighbours that a vertex goes in a step, above
  * 0 to 1; 0 stands for 0.5. passband (TAUBIN): the eigenvalue of the mesh's normalised Laplacian, 0 to 2, below which
@@ -36,8 +44,8 @@ HEWN_API bool hewn_smooth_method_find(const char *name, hewn_smooth_method *out)
  * that is for a time of step^2 / 2. n steps reach sqrt(n) as far. 0 stands for the mean edge. COTAN goes less far at
  * vertices where so long a step would not be stable, and counts them.
  *
- * angle (BILATERAL): degrees; faces whose normals differ by much more do not touch each other. 0 stands for 15. radius:
- * the same for the distance between faces; 0 stands for the mean one of neighbours.
+ * angle (BILATERAL): degrees; faces whose normals, noise aside, differ by much more do not mix. 0 stands for 20.
+ * radius: the same for the distance between faces; 0 stands for the mean one of neighbours.
  *
  * original, push (HC): how much a vertex is drawn to where it was at the start (against the step before), and how much
  * of that pull it takes from itself (against its neighbours), 0 to 1. Negative or both zero: 0 and 0.5.
@@ -46,9 +54,7 @@ HEWN_API bool hewn_smooth_method_find(const char *name, hewn_smooth_method *out)
  * not exactly two such edges meet it stays. COTAN and IMPLICIT never move it. lock_boundary makes it stay in any case;
  * lock_angle above 0 does so with both ends of edges whose faces bend by more than so many degrees; `labels`, one a
  * face, with vertices where faces of different labels meet. `freedom`, one a vertex from 0 (stays) to 1, scales how far
- * each moves. Vertices without faces stay.
- *
- * keep_volume moves what is free along its normals until each closed, oriented component has the volume that it had. */
+ * each moves. Vertices without faces stay. */
 typedef struct hewn_smooth_desc {
     hewn_smooth_method method;
     uint32_t iterations;
@@ -62,7 +68,7 @@ typedef struct hewn_smooth_desc {
     double lock_angle;
     const int32_t *labels;
     const double *freedom;
-    bool keep_volume;
+    hewn_smooth_volume volume;
     const hewn_progress *progress; /* or NULL; the stage is "smooth" */
 } hewn_smooth_desc;
 HEWN_API hewn_smooth_desc hewn_smooth_desc_default(void);

@@ -7,7 +7,7 @@ static const hewn_option options[] = {
     {0, "method", "NAME",
      "taubin (hardly shrinks), laplacian, cotan (mean curvature flow), implicit (the same, stable for any step), "
      "bilateral (keeps sharp edges) or hc. Default: taubin."},
-    {0, "iterations", "N", "Take N steps. Default: 10; implicit 1; bilateral 6."},
+    {0, "iterations", "N", "Take N steps. Default: 10; implicit 1; bilateral 8."},
     {0, "strength", "S",
      "taubin, laplacian: go this share of the way to the mean of the neighbours in a step, up to 1. Default: 0.5."},
     {0, "passband", "K",
@@ -15,7 +15,7 @@ static const hewn_option options[] = {
     {0, "step", "LENGTH",
      "cotan, implicit: smooth as a Gaussian of this deviation in each step, in the input's unit. Default: the mean "
      "edge."},
-    {0, "angle", "DEGREES", "bilateral: faces that bend by much more do not mix. Default: 15."},
+    {0, "angle", "DEGREES", "bilateral: faces that bend by much more do not mix. Default: 20."},
     {0, "radius", "LENGTH",
      "bilateral: faces that are much further apart do not mix. Default: the mean distance of neighbours."},
     {0, "original", "A", "hc: draw vertices to where they were at first, from 0 to 1. Default: 0."},
@@ -23,7 +23,8 @@ static const hewn_option options[] = {
     {0, "lock", "LIST",
      "What stays, with commas between: boundary, features:ANGLE (edges that bend by more), labels (where faces differ "
      "in label, material, group or object)."},
-    {0, "keep-volume", NULL, "Give each closed component its volume back by an offset."},
+    {0, "keep-volume", NULL, "Give each closed component its volume back by an offset. taubin does so by default."},
+    {0, "free-volume", NULL, "Do not."},
     {0, "mask", "NAME", "Scale each vertex' move by this vertex attribute, from 0 to 1 (bytes: to 255)."},
     HEWN_OPTIONS_FRAME,
     HEWN_OPTION_FROM,

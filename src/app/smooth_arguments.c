@@ -126,6 +126,15 @@ static hewn_result read_locks(const hewn_arguments *arguments, hewn_file_smooth 
     return HEWN_OK;
 }
 
+static hewn_result read_volume(const hewn_arguments *arguments, hewn_smooth_volume *out, hewn_error *error)
+{
+    bool keep = hewn_arguments_has(arguments, "keep-volume"), leave = hewn_arguments_has(arguments, "free-volume");
+    if (keep && leave)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "either --keep-volume or --free-volume");
+    *out = keep ? HEWN_SMOOTH_VOLUME_KEPT : leave ? HEWN_SMOOTH_VOLUME_FREE : HEWN_SMOOTH_VOLUME_DEFAULT;
+    return HEWN_OK;
+}
+
 hewn_result hewn_smooth_arguments_read(const hewn_arguments *arguments, hewn_file_smooth *out, hewn_error *error)
 {
     *out = (hewn_file_smooth){0};
@@ -134,7 +143,7 @@ hewn_result hewn_smooth_arguments_read(const hewn_arguments *arguments, hewn_fil
         HEWN_TRY(hewn_smooth_method_parse(method, "--method", &out->desc.method, error));
     HEWN_TRY(read_parameters(arguments, &out->desc, error));
     HEWN_TRY(read_locks(arguments, out, error));
-    out->desc.keep_volume = hewn_arguments_has(arguments, "keep-volume");
+    HEWN_TRY(read_volume(arguments, &out->desc.volume, error));
     out->mask = hewn_arguments_value(arguments, "mask");
     return HEWN_OK;
 }

@@ -65,7 +65,7 @@ static hewn_result settle_hc(hewn_smooth_desc *desc, hewn_error *error)
 
 static uint32_t default_iterations(hewn_smooth_method method)
 {
-    return method == HEWN_SMOOTH_IMPLICIT ? 1 : method == HEWN_SMOOTH_BILATERAL ? 6 : 10;
+    return method == HEWN_SMOOTH_IMPLICIT ? 1 : method == HEWN_SMOOTH_BILATERAL ? 8 : 10;
 }
 
 hewn_result hewn_smooth_settle(hewn_smooth_desc *desc, hewn_error *error)
@@ -74,6 +74,10 @@ hewn_result hewn_smooth_settle(hewn_smooth_desc *desc, hewn_error *error)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no smoothing method %d", (int)desc->method);
     if (desc->iterations == 0)
         desc->iterations = default_iterations(desc->method);
+    if ((unsigned)desc->volume > HEWN_SMOOTH_VOLUME_FREE)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no way %d to treat volumes", (int)desc->volume);
+    if (desc->volume == HEWN_SMOOTH_VOLUME_DEFAULT)
+        desc->volume = desc->method == HEWN_SMOOTH_TAUBIN ? HEWN_SMOOTH_VOLUME_KEPT : HEWN_SMOOTH_VOLUME_FREE;
     if (!(desc->lock_angle >= 0 && desc->lock_angle <= 180))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the angle of features must be from 0 to 180 degrees, not %g",
                          desc->lock_angle);
@@ -81,7 +85,7 @@ hewn_result hewn_smooth_settle(hewn_smooth_desc *desc, hewn_error *error)
     case HEWN_SMOOTH_LAPLACIAN:
     case HEWN_SMOOTH_TAUBIN: HEWN_TRY(settle_number(&desc->strength, "strength", 0.5, 0, 1, error)); break;
     case HEWN_SMOOTH_BILATERAL:
-        HEWN_TRY(settle_number(&desc->angle, "angle", 15, 0, 180, error));
+        HEWN_TRY(settle_number(&desc->angle, "angle", 20, 0, 180, error));
         if (desc->radius != 0)
             HEWN_TRY(settle_number(&desc->radius, "radius", 0, 0, INFINITY, error));
         break;

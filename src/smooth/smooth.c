@@ -199,7 +199,7 @@ static hewn_result run(smooth_work *work, hewn_smooth_desc *desc, double *positi
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
     memcpy(before, work->at, 3 * (size_t)work->count * sizeof *before);
     hewn_result result = desc->step > 0 ? run_method(work, error) : HEWN_OK;
-    if (result == HEWN_OK && desc->keep_volume)
+    if (result == HEWN_OK && desc->volume == HEWN_SMOOTH_VOLUME_KEPT)
         result = hewn_smooth_keep_volume(work, before, error);
     if (result == HEWN_OK) {
         measure(work, work->at, from.scale, &report->volume_after, &report->area_after);

@@ -91,7 +91,8 @@ static void test_eigenvectors_are_scaled(void **state)
         assert_non_null(values);
         find_spectrum(&models[m], values, values + n);
         for (int i = 0; i < 10; i++) {
-            hewn_smooth_desc desc = {.method = i % 2 ? HEWN_SMOOTH_TAUBIN : HEWN_SMOOTH_LAPLACIAN};
+            hewn_smooth_desc desc = {.method = i % 2 ? HEWN_SMOOTH_TAUBIN : HEWN_SMOOTH_LAPLACIAN,
+                                     .volume = HEWN_SMOOTH_VOLUME_FREE};
             desc.iterations = 1 + random_below(&random, 4);
             desc.strength = 0.05 + 0.9 * random_unit(&random);
             desc.passband = 0.01 + 0.5 * random_unit(&random);
@@ -256,7 +257,9 @@ static void test_same_bytes_for_any_threads(void **state)
     add_noise(&model, 0.003, &random);
     for (size_t m = 0; m < sizeof all_methods / sizeof *all_methods; m++) {
         double *first = make_positions(&model), *other = make_positions(&model);
-        hewn_smooth_desc desc = {.method = all_methods[m], .iterations = 4, .keep_volume = m % 2 == 0};
+        hewn_smooth_desc desc = {.method = all_methods[m],
+                                 .iterations = 4,
+                                 .volume = m % 2 == 0 ? HEWN_SMOOTH_VOLUME_KEPT : HEWN_SMOOTH_VOLUME_FREE};
         omp_set_num_threads(1);
         smooth(&model, &desc, first, NULL);
         for (int count = 2; count <= 7; count += 1 + count / 3) {
@@ -278,7 +281,7 @@ static void test_soups_stay_finite(void **state)
     for (int i = 0; i < 1500; i++) {
         hewn_model model = make_soup(&random);
         hewn_smooth_desc desc = {.method = all_methods[i % 6], .iterations = 1 + random_below(&random, 5)};
-        desc.keep_volume = random_below(&random, 2);
+        desc.volume = (hewn_smooth_volume)random_below(&random, 3);
         desc.lock_boundary = random_below(&random, 2);
         desc.lock_angle = random_below(&random, 2) ? 40 : 0;
         double *positions = make_positions(&model);
@@ -303,7 +306,8 @@ static void test_flat_and_isolated(void **state)
         static const uint32_t corners[] = {0, 2, 4, 0, 1, 2, 3, 3, 3, 2, 3, 4};
         memcpy(model.corners, corners, sizeof corners);
         double *positions = make_positions(&model);
-        smooth(&model, &(hewn_smooth_desc){.method = all_methods[m], .keep_volume = true}, positions, NULL);
+        smooth(&model, &(hewn_smooth_desc){.method = all_methods[m], .volume = HEWN_SMOOTH_VOLUME_KEPT}, positions,
+               NULL);
         for (uint64_t i = 0; i < 27; i++)
             assert_true(isfinite(positions[i]));
         assert_memory_equal(positions + 18, model.positions + 18, 9 * sizeof(double));
@@ -336,8 +340,11 @@ static void test_locks(void **state)
                     model.corners[g] == model.corners[f % 3 == 2 ? f - 2 : f + 1] && labels[f / 3] != labels[g / 3])
                     stays[model.corners[f]] = stays[model.corners[g]] = 1;
         double *positions = make_positions(&model);
-        hewn_smooth_desc desc = {
-            .method = all_methods[m], .freedom = freedom, .labels = labels, .lock_boundary = true, .keep_volume = true};
+        hewn_smooth_desc desc = {.method = all_methods[m],
+                                 .freedom = freedom,
+                                 .labels = labels,
+                                 .lock_boundary = true,
+                                 .volume = HEWN_SMOOTH_VOLUME_KEPT};
         hewn_smooth_report report;
         smooth(&model, &desc, positions, &report);
         uint64_t moved = 0, used = 0;
@@ -385,13 +392,13 @@ static void test_volume_is_kept(void **state)
     for (size_t m = 0; m < 6; m++) {
         hewn_model model = model_of(join_meshes(make_torus(40, 16), make_bipyramid(20), 5));
         add_noise(&model, 0.01, &random);
-        hewn_smooth_desc desc = {.method = all_methods[m], .iterations = 5, .keep_volume = true};
+        hewn_smooth_desc desc = {.method = all_methods[m], .iterations = 5, .volume = HEWN_SMOOTH_VOLUME_KEPT};
         double *positions = make_positions(&model);
         hewn_smooth_report report;
         smooth(&model, &desc, positions, &report);
         assert_int_equal(report.closed_components, 2);
         assert_true(fabs(report.volume_after - report.volume_before) <= 1e-9 * fabs(report.volume_before));
-        desc.keep_volume = false;
+        desc.volume = HEWN_SMOOTH_VOLUME_FREE;
         smooth(&model, &desc, positions, &report);
         assert_true(fabs(report.volume_after - report.volume_before) > 1e-6 * fabs(report.volume_before));
         hewn_free(positions);

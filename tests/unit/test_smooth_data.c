@@ -7,30 +7,41 @@ static int by_value(const void *a, const void *b)
     return (left > right) - (left < right);
 }
 
-/* 100 iterations of Taubin's method: volume within 0.5 %. (Of scans of few thousand vertices, whose limbs are a few
- * edges wide, more goes: docs/refinement.md has a table.) */
+static double volume_change(const hewn_model *model, hewn_smooth_volume volume)
+{
+    hewn_smooth_report report;
+    double *positions = make_positions(model);
+    smooth(model, &(hewn_smooth_desc){.iterations = 100, .volume = volume}, positions, &report);
+    hewn_free(positions);
+    return report.volume_after / report.volume_before - 1;
+}
+
+/* 100 iterations of Taubin's method: volume within 0.5 %, of dense scans without being given back. (Of those of few
+ * thousand vertices, whose limbs are a few edges wide, more goes: docs/refinement.md has a table.) */
 static void test_volume_of_scans(void **state)
 {
     (void)state;
-    static const char *const names[] = {"mesh-scan/horse.ply", "mesh-scan/spot.obj", "mesh-scan/homer.off",
-                                        "mesh-scan/penguin_hr.obj"};
-    int seen = 0;
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    static const struct {
+        const char *name;
+        bool dense;
+    } scans[] = {{"mesh-scan/horse.ply", true},    {"mesh-scan/spot.obj", true},
+                 {"mesh-scan/homer.off", true},    {"mesh-scan/penguin_hr.obj", true},
+                 {"mesh-scan/wingnut.obj", false}, {"mesh-scan/bull.off", false},
+                 {"mesh-scan/femur.off", false},   {"mesh-scan/elephant.off", false},
+                 {"mesh-scan/dino.off", false},    {"mesh-scan/scorpion_low_resolution.obj", false},
+                 {"mesh-scan/bones.off", false},   {"mesh-scan/spider.ply", false}};
+    for (size_t i = 0; i < sizeof scans / sizeof *scans; i++) {
         hewn_model model;
-        if (!read_data(names[i], &model))
+        if (!read_data(scans[i].name, &model))
             skip();
-        hewn_smooth_report report;
-        double *positions = make_positions(&model);
-        smooth(&model, &(hewn_smooth_desc){.iterations = 100}, positions, &report);
-        double change = report.volume_after / report.volume_before - 1;
-        print_message("# %s: %llu vertices, volume changes by %.3f %%\n", names[i],
-                      (unsigned long long)model.vertex_count, 100 * change);
-        seen++;
-        assert_true(fabs(change) < 0.005);
-        hewn_free(positions);
+        double kept = volume_change(&model, HEWN_SMOOTH_VOLUME_DEFAULT),
+               free = volume_change(&model, HEWN_SMOOTH_VOLUME_FREE);
+        print_message("# %s: %llu vertices, volume changes by %.4f %%, free by %.3f %%\n", scans[i].name,
+                      (unsigned long long)model.vertex_count, 100 * kept, 100 * free);
+        assert_true(fabs(kept) < 0.005);
+        assert_true((fabs(free) < 0.005) == scans[i].dense);
         hewn_model_destroy(&model);
     }
-    assert_true(seen > 3);
 }
 
 /* --- sharp edges -------------------------------------------------------------------------------------------------- */
@@ -132,7 +143,8 @@ static double noise_left(const hewn_model *clean, const double *positions)
     return sqrt(sum / (3 * (double)clean->face_count));
 }
 
-static void try_noise(const hewn_model *clean, double share, uint64_t seed, bool must)
+/* Noise of `share` edges: how much of it may be left, and how far sharp edges may change, in degrees. */
+static void try_noise(const hewn_model *clean, double share, uint64_t seed, double most_left, double most_changed)
 {
     random_state random = {seed};
     hewn_model noisy = *clean;
@@ -151,12 +163,10 @@ static void try_noise(const hewn_model *clean, double share, uint64_t seed, bool
         "# noise of %.1f edges: %.3f left by bilateral, %.3f by Laplacian; %zu sharp edges change by %.2f and "
         "%.2f degrees\n",
         share, left / start, noise_left(clean, laplacian) / start, sharp_count, kept, blunted);
-    if (must) {
-        assert_true(sharp_count > 100);
-        assert_true(kept < 3);
-        assert_true(blunted > 15);
-        assert_true(left < start / 2.9);
-    }
+    assert_true(sharp_count > 100);
+    assert_true(kept < most_changed);
+    assert_true(blunted > 15);
+    assert_true(left < most_left * start);
     free(sharp);
     hewn_free(noisy.positions);
     hewn_free(bilateral);
@@ -170,8 +180,8 @@ static void test_machine_part(void **state)
     if (!read_data("mesh-cad/fandisk.off", &clean))
         skip();
     for (uint64_t seed = 1; seed <= 3; seed++)
-        try_noise(&clean, 0.1, seed, true);
-    try_noise(&clean, 0.3, 1, false);
+        try_noise(&clean, 0.1, seed, 1.0 / 3, 3);
+    try_noise(&clean, 0.3, 1, 0.4, 10);
     hewn_model_destroy(&clean);
 }
 
