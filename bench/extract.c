@@ -45,6 +45,7 @@ static const contest contests[] = {
 
 typedef struct outcome {
     double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];
+    double hewn_processor[MOST_RUNS], peer_processor[MOST_RUNS]; /* both cores together: other processes do not count */
     double dual[MOST_RUNS]; /* Hewn by dual contouring, which peers here do not have */
     double stage[4];
     double first; /* compiling and the first run */
@@ -56,6 +57,14 @@ typedef struct manner {
     hewn_evaluation evaluation;
     bool peers;
 } manner;
+
+static double processor_seconds(void)
+{
+    struct rusage used;
+    getrusage(RUSAGE_SELF, &used);
+    return (double)used.ru_utime.tv_sec + (double)used.ru_stime.tv_sec +
+           1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
 
 static void stop_on(hewn_result result, const hewn_error *error)
 {
@@ -147,9 +156,13 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
     if (peers && entry->dense)
         run_peers(&subject, resolution, values, unused, unused + 1, out);
     for (int i = 0; i < runs; i++) {
+        double begin = processor_seconds();
         run_hewn(extractor, &bounds, resolution, HEWN_METHOD_MARCHING_CUBES, &out->hewn[i], out);
+        double between = processor_seconds();
         if (peers)
             run_peers(&subject, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
+        out->hewn_processor[i] = between - begin;
+        out->peer_processor[i] = processor_seconds() - between;
         run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, &out->dual[i], out);
     }
     free((void *)subject.heap);
@@ -166,25 +179,38 @@ static double paired_ratio(const outcome *result, int runs)
     return bench_median(ratios, runs);
 }
 
+static double processor_ratio(const outcome *result, int runs)
+{
+    double ratios[MOST_RUNS];
+    for (int i = 0; i < runs; i++)
+        ratios[i] = result->peer_processor[i] / result->hewn_processor[i];
+    return bench_median(ratios, runs);
+}
+
 static void print_outcome(FILE *json, const contest *entry, uint32_t resolution, const outcome *result, int runs,
                           bool first)
 {
     double ours = bench_median(result->hewn, runs), sampling = bench_median(result->sampling, runs);
     double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
     double dual = bench_median(result->dual, runs);
-    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   dc %8.3f   %9llu %9llu   cull %.3f, evaluate %.3f, "
+    double processor = bench_median(result->hewn_processor, runs), by_processor = processor_ratio(result, runs);
+    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   cpu %7.3f %6.2fx   dc %8.3f   %9llu %9llu   cull "
+           "%.3f, evaluate %.3f, "
            "extract %.3f, read back %.3f\n",
            entry->name, resolution, result->listed ? "lists" : "straight", result->first, ours, sampling, meshing,
-           ratio, dual, (unsigned long long)result->hewn_triangles, (unsigned long long)result->peer_triangles,
-           result->stage[0], result->stage[1], result->stage[2], result->stage[3]);
+           ratio, processor, by_processor, dual, (unsigned long long)result->hewn_triangles,
+           (unsigned long long)result->peer_triangles, result->stage[0], result->stage[1], result->stage[2],
+           result->stage[3]);
     if (json)
         fprintf(json,
                 "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
                 "\"first_seconds\": %.4f, \"hewn_seconds\": %.4f, \"hewn_dc_seconds\": %.4f, "
                 "\"sampling_seconds\": %.4f, "
-                "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"triangles\": %llu}",
+                "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"hewn_processor_seconds\": %.4f, "
+                "\"times_less_processor\": %.3f, \"triangles\": %llu}",
                 first ? "" : ",", entry->name, resolution, result->listed ? "lists" : "straight", runs, result->first,
-                ours, dual, sampling, meshing, ratio, (unsigned long long)result->hewn_triangles);
+                ours, dual, sampling, meshing, ratio, processor, by_processor,
+                (unsigned long long)result->hewn_triangles);
 }
 
 static bool wanted(const contest *entry, int argc, char **argv, int from)
@@ -223,8 +249,8 @@ int main(int argc, char **argv)
     printf(
         "device %s; dense sampling in C and VTK flying edges (%s) on %d threads; medians of %d runs in turn, seconds\n",
         hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
-    printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %11s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn mc",
-           "sampling + VTK", "ratio", "Hewn dc", "triangles", "VTK's");
+    printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %19s   %11s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn mc",
+           "sampling + VTK", "ratio", "processor, ratio", "Hewn dc", "triangles", "VTK's");
     if (json)
         fprintf(json, "[");
     bool first = true;

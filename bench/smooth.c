@@ -18,7 +18,7 @@
 static double hewn_smooth(const peer_input *input, hewn_smooth_method method, int iterations, double *positions)
 {
     const hewn_polygons polygons = {input->vertex_count, input->positions, input->triangle_count, NULL, input->indices};
-    hewn_smooth_desc desc = {.method = method, .iterations = (uint32_t)iterations};
+    hewn_smooth_desc desc = {.volume = HEWN_SMOOTH_VOLUME_FREE, .method = method, .iterations = (uint32_t)iterations};
     hewn_error error;
     double begin = hewn_clock_now();
     if (hewn_polygons_smooth(&polygons, &desc, positions, NULL, &error) != HEWN_OK) {

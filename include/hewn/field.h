@@ -114,6 +114,103 @@ HEWN_API hewn_node hewn_cone(hewn_field *field, double bottom, double top, doubl
  * normal need not be of length 1, but not 0. */
 HEWN_API hewn_node hewn_plane(hewn_field *field, double nx, double ny, double nz, double distance);
 
+/* The same as hewn_plane. */
+HEWN_API hewn_node hewn_half_space(hewn_field *field, double nx, double ny, double nz, double distance);
+/* The edges of a box of these outer sizes, `edge` thick (below half of the least size). */
+HEWN_API hewn_node hewn_box_frame(hewn_field *field, double width, double height, double depth, double edge);
+/* Radii along x, y, z; a lower bound of the distance. */
+HEWN_API hewn_node hewn_ellipsoid(hewn_field *field, double x, double y, double z);
+/* What a ball sweeps over from (0, -height/2, 0) to (0, height/2, 0) while its radius goes from `bottom` to `top`. */
+HEWN_API hewn_node hewn_round_cone(hewn_field *field, double bottom, double top, double height);
+/* A link of a chain in the xy plane: a torus that is cut and pulled apart by `length` along y. */
+HEWN_API hewn_node hewn_link(hewn_field *field, double length, double major, double minor);
+/* A regular polygon with this many corners at `radius`, along the y axis, a corner towards -z. */
+HEWN_API hewn_node hewn_prism(hewn_field *field, unsigned sides, double radius, double height);
+/* On a square of `width`, from -height/2 to the tip at height/2. Lower bounds of the distance, as the next four. */
+HEWN_API hewn_node hewn_pyramid(hewn_field *field, double width, double height);
+/* Regular solids by the radius of the ball around them; corners of the octahedron lie on the axes. */
+HEWN_API hewn_node hewn_tetrahedron(hewn_field *field, double radius);
+HEWN_API hewn_node hewn_octahedron(hewn_field *field, double radius);
+HEWN_API hewn_node hewn_dodecahedron(hewn_field *field, double radius);
+HEWN_API hewn_node hewn_icosahedron(hewn_field *field, double radius);
+/* A round wire through `count` points (x, y, z triples; two or more); along cubic Bezier curves (an end, two controls,
+ * an end, and so on), whose chords stay within a hundredth of the radius. Distances outside, lower bounds inside. */
+HEWN_API hewn_node hewn_tube(hewn_field *field, const double *points, size_t count, double radius);
+HEWN_API hewn_node hewn_bezier_tube(hewn_field *field, const double *points, size_t count, double radius);
+/* A wire wound about the y axis, right-handed, `pitch` a turn, cut level at -height/2 and height/2. Near the wire about
+ * a distance; no bound of one. */
+HEWN_API hewn_node hewn_helix(hewn_field *field, double radius, double pitch, double height, double wire);
+
+/* --- flat shapes: fields of x and y alone, endless along z -------------------------------------------------------- */
+
+enum { HEWN_OUTLINE_MOST = 65536 /* points of a polygon */ };
+
+HEWN_API hewn_node hewn_circle(hewn_field *field, double radius);
+HEWN_API hewn_node hewn_rectangle(hewn_field *field, double width, double height);
+HEWN_API hewn_node hewn_ellipse(hewn_field *field, double x, double y); /* a lower bound */
+/* `count` corners (x, y pairs) in order, either way round; where sides cross, what lies within an odd number of loops
+ * is inside. */
+HEWN_API hewn_node hewn_polygon(hewn_field *field, const double *points, size_t count);
+/* Corners at `radius` (of the star in turn at `outer` and `inner`), the first one on the y axis. */
+HEWN_API hewn_node hewn_regular_polygon(hewn_field *field, unsigned sides, double radius);
+HEWN_API hewn_node hewn_star(hewn_field *field, unsigned corners, double outer, double inner);
+
+/* A straight line (degree 1) or a Bezier curve from where the last one ended: `degree` points, the last of them its
+ * end. */
+typedef struct hewn_curve {
+    unsigned degree; /* 1, 2 or 3 */
+    double points[3][2];
+} hewn_curve;
+
+/* A closed outline; the first curve starts where the last one ends. Curves become chords, off by less than a 4,000th of
+ * the greatest coordinate. */
+HEWN_API hewn_node hewn_outline(hewn_field *field, const hewn_curve *curves, size_t count);
+
+/* Along z from -height/2 to height/2. */
+HEWN_API hewn_node hewn_extrude(hewn_field *field, hewn_node shape, double height);
+/* Around the y axis what of the shape lies at x >= 0. */
+HEWN_API hewn_node hewn_revolve(hewn_field *field, hewn_node shape);
+/* From one shape at z = -height/2 to another at height/2, in between a mix of the two. */
+HEWN_API hewn_node hewn_loft(hewn_field *field, hewn_node bottom, hewn_node top, double height);
+
+/* --- periodic surfaces ----------------------------------------------------------------------------------------------
+ * A walled sheet of about `thickness` (never less), or, where that is 0, one of the two halves of space. 1-Lipschitz.
+ */
+
+HEWN_API hewn_node hewn_gyroid(hewn_field *field, double period, double thickness);
+HEWN_API hewn_node hewn_schwarz_p(hewn_field *field, double period, double thickness);
+HEWN_API hewn_node hewn_schwarz_d(hewn_field *field, double period, double thickness);
+HEWN_API hewn_node hewn_neovius(hewn_field *field, double period, double thickness);
+HEWN_API hewn_node hewn_lidinoid(hewn_field *field, double period, double thickness);
+HEWN_API hewn_node hewn_iwp(hewn_field *field, double period, double thickness);
+HEWN_API hewn_node hewn_frd(hewn_field *field, double period, double thickness);
+HEWN_API hewn_node hewn_fischer_koch_s(hewn_field *field, double period, double thickness);
+
+/* --- noise: fields from -1 to 1, the same on every device --------------------------------------------------------- */
+
+typedef enum hewn_noise_kind {
+    HEWN_NOISE_VALUE,    /* random values at the corners of cells, and between them */
+    HEWN_NOISE_GRADIENT, /* random slopes at the corners (Perlin) */
+    HEWN_NOISE_SIMPLEX,  /* the same on a lattice of tetrahedra */
+    HEWN_NOISE_CELLULAR  /* the distance to the nearest of one random point a cell (Worley): -1 there, 1 a cell away */
+} hewn_noise_kind;
+
+/* Cells of `size`; seeds below 2^24. */
+HEWN_API hewn_node hewn_noise(hewn_field *field, hewn_noise_kind kind, double size, uint32_t seed);
+
+typedef struct hewn_octaves {
+    hewn_noise_kind kind;
+    double size;       /* of the coarsest one's cells */
+    unsigned octaves;  /* 1 to 16 */
+    double gain;       /* how much less each octave counts; 0 is 0.5 */
+    double lacunarity; /* how much finer it is; 0 is 2 */
+    uint32_t seed;
+} hewn_octaves;
+
+HEWN_API hewn_node hewn_fbm(hewn_field *field, const hewn_octaves *octaves);    /* the octaves' weighted mean */
+HEWN_API hewn_node hewn_ridged(hewn_field *field, const hewn_octaves *octaves); /* of 1 - 2 |noise|: crests */
+HEWN_API hewn_node hewn_billow(hewn_field *field, const hewn_octaves *octaves); /* of 2 |noise| - 1: humps */
+
 /* --- combining --------------------------------------------------------------------------------------------------- */
 
 typedef enum hewn_blend {
@@ -131,6 +228,28 @@ HEWN_API hewn_node hewn_smooth_union(hewn_field *field, hewn_node a, hewn_node b
 HEWN_API hewn_node hewn_smooth_intersection(hewn_field *field, hewn_node a, hewn_node b, hewn_blend blend, double size);
 HEWN_API hewn_node hewn_smooth_difference(hewn_field *field, hewn_node a, hewn_node b, hewn_blend blend, double size);
 
+/* In one of the two, not in both. */
+HEWN_API hewn_node hewn_xor(hewn_field *field, hewn_node a, hewn_node b);
+/* Corners cut by a plane, rounded by a quarter circle, or cut into steps; `size` away from where the two meet. */
+HEWN_API hewn_node hewn_chamfer_union(hewn_field *field, hewn_node a, hewn_node b, double size);
+HEWN_API hewn_node hewn_chamfer_intersection(hewn_field *field, hewn_node a, hewn_node b, double size);
+HEWN_API hewn_node hewn_chamfer_difference(hewn_field *field, hewn_node a, hewn_node b, double size);
+HEWN_API hewn_node hewn_round_union(hewn_field *field, hewn_node a, hewn_node b, double size);
+HEWN_API hewn_node hewn_round_intersection(hewn_field *field, hewn_node a, hewn_node b, double size);
+HEWN_API hewn_node hewn_round_difference(hewn_field *field, hewn_node a, hewn_node b, double size);
+HEWN_API hewn_node hewn_stairs_union(hewn_field *field, hewn_node a, hewn_node b, double size, unsigned steps);
+HEWN_API hewn_node hewn_stairs_intersection(hewn_field *field, hewn_node a, hewn_node b, double size, unsigned steps);
+HEWN_API hewn_node hewn_stairs_difference(hewn_field *field, hewn_node a, hewn_node b, double size, unsigned steps);
+
+/* A wall of this thickness along the surface, half of it on either side. */
+HEWN_API hewn_node hewn_shell(hewn_field *field, hewn_node shape, double thickness);
+/* Grown by a distance (above 0: convex edges become round; below 0: concave ones). */
+HEWN_API hewn_node hewn_offset(hewn_field *field, hewn_node shape, double distance);
+/* Where `by` is above 0 the surface moves inwards by about that. */
+HEWN_API hewn_node hewn_displace(hewn_field *field, hewn_node shape, hewn_node by);
+/* a where `part` is 0, b where it is 1. */
+HEWN_API hewn_node hewn_morph(hewn_field *field, hewn_node a, hewn_node b, hewn_node part);
+
 /* --- moving ------------------------------------------------------------------------------------------------------ */
 
 HEWN_API hewn_node hewn_translate(hewn_field *field, hewn_node shape, double x, double y, double z);
@@ -142,6 +261,35 @@ HEWN_API hewn_node hewn_scale(hewn_field *field, hewn_node shape, double factor)
 HEWN_API hewn_node hewn_stretch(hewn_field *field, hewn_node shape, double x, double y, double z);
 /* The shape with x, y, z replaced by other expressions. */
 HEWN_API hewn_node hewn_remap(hewn_field *field, hewn_node shape, hewn_node x, hewn_node y, hewn_node z);
+
+/* --- bending space ------------------------------------------------------------------------------------------------
+ * Axes are 0, 1, 2 for x, y, z. */
+
+enum { HEWN_COPIES_MOST = 65536 };
+
+/* The mirror image; the half at positive coordinates with its mirror image. */
+HEWN_API hewn_node hewn_mirror(hewn_field *field, hewn_node shape, int axis);
+HEWN_API hewn_node hewn_symmetric(hewn_field *field, hewn_node shape, int axis);
+/* nx ny nz copies, the first one in place, the others at multiples of (dx, dy, dz). */
+HEWN_API hewn_node hewn_array(hewn_field *field, hewn_node shape, unsigned nx, unsigned ny, unsigned nz, double dx,
+                              double dy, double dz);
+/* Copies around an axis. */
+HEWN_API hewn_node hewn_radial(hewn_field *field, hewn_node shape, unsigned count, int axis);
+/* Copies without end, at multiples of these distances (0: not along that axis). The shape may reach as far as its
+ * neighbours' origins. */
+HEWN_API hewn_node hewn_tile(hewn_field *field, hewn_node shape, double dx, double dy, double dz);
+/* The same with every other copy mirrored; only what lies within half a distance of the origin is repeated. */
+HEWN_API hewn_node hewn_mirror_tile(hewn_field *field, hewn_node shape, double dx, double dy, double dz);
+/* Turned about the y axis by `angle` (radians) for every unit of y. */
+HEWN_API hewn_node hewn_twist(hewn_field *field, hewn_node shape, double angle);
+/* The x axis bent to a circle in the xy plane, towards +y, by `angle` (radians) for every unit of x. */
+HEWN_API hewn_node hewn_bend(hewn_field *field, hewn_node shape, double angle);
+/* Scaled across y: by `bottom` at -height/2 and below, by `top` at height/2 and above, evenly between. */
+HEWN_API hewn_node hewn_taper(hewn_field *field, hewn_node shape, double bottom, double top, double height);
+/* Cut at the origin and pulled apart by these lengths, what is between filled straight. */
+HEWN_API hewn_node hewn_elongate(hewn_field *field, hewn_node shape, double x, double y, double z);
+/* Space pushed about by gradient noise, up to `amount` along each axis. */
+HEWN_API hewn_node hewn_warp(hewn_field *field, hewn_node shape, double amount, double size, uint32_t seed);
 
 /* --- asking: the CPU oracle -------------------------------------------------------------------------------------- */
 

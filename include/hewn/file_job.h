@@ -1,5 +1,5 @@
-/* Jobs from mesh file to mesh file: read, say what it is, repair, subdivide, smooth, convert,
- * write; and a report of exactly what
+/* Jobs from mesh file to mesh file: read, say what it is, repair, subdivide, simplify,
+ * smooth, convert, write; and a report of exactly what
  * was done. */
 #ifndef HEWN_FILE_JOB_H
 #define HEWN_FILE_JOB_H
@@ -7,6 +7,7 @@
 #include "hewn/check.h"
 #include "hewn/io.h"
 #include "hewn/job.h"
+#include "hewn/simplify.h"
 #include "hewn/smooth.h"
 #include "hewn/subdivide.h"
 
@@ -43,6 +44,8 @@ typedef struct hewn_file_job_desc {
     const hewn_axis *to_up;         /* likewise */
     const hewn_repair_desc *repair; /* in the input's unit; its progress is not looked at. NULL: no repair */
     const hewn_file_subdivide *subdivide; /* after repair; NULL: no subdivision */
+    const hewn_simplify_desc *simplify;   /* after that, lengths in the input's unit; its labels, frozen and progress
+                                             are not looked at. NULL: no simplification */
     const hewn_file_smooth *smooth;       /* after that; NULL: no smoothing */
     bool check;                           /* examine what will be written, */
     bool skip_self_intersections;         /* but for these */
@@ -77,12 +80,14 @@ typedef struct hewn_file_report {
     bool subdivided;
     hewn_scheme scheme;
     hewn_subdivide_report subdivide;
+    bool simplified;
+    hewn_simplify_report simplify;
     bool smoothed;
     hewn_smooth_method smooth_method;
     hewn_smooth_report smooth;
     hewn_check *check; /* NULL: not examined */
     hewn_file_losses losses;
-    hewn_report_stage stages[8]; /* load, repair, subdivide, smooth, check, write */
+    hewn_report_stage stages[8]; /* load, repair, subdivide, simplify, smooth, check, write */
     uint32_t stage_count;
     uint64_t peak_host_bytes;
     double seconds;

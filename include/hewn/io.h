@@ -56,6 +56,11 @@ typedef struct hewn_write_desc {
      * where the model knows none and no unit is given (GLB and 3MF then take them to be their own). */
     const hewn_unit *unit;
     hewn_axis up;
+    bool unsure; /* of triangle buffers: nobody knows their axes nor, where `unit` is NULL, their unit */
+    /* Which space of a patient positions are in: "RAS" or "LPS" (towards which sides the axes point). STL, OBJ, PLY and
+     * OFF say SPACE=RAS in their header or first comments, which 3D Slicer reads; GLB in its asset's extras, 3MF in its
+     * description. NULL: nothing is said. Static or the caller's. */
+    const char *space;
     bool quads;                    /* of triangles that are paired: write the quads, where the format has polygons */
     const hewn_progress *progress; /* or NULL; the stage is "write" */
 } hewn_write_desc;
@@ -71,6 +76,21 @@ HEWN_API hewn_result hewn_model_write(const hewn_model *model, const char *path,
 /* The same for triangle buffers, without a copy of them. */
 HEWN_API hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *path,
                                           const hewn_write_desc *desc, hewn_error *error);
+
+/* One of several objects in a file: a model of triangles with a name and a colour. */
+typedef struct hewn_object {
+    const hewn_model *model; /* in metres, +Y up; channels are not looked at */
+    const char *name;        /* UTF-8 */
+    uint8_t color[4];        /* red, green, blue as on a screen (sRGB), opacity */
+} hewn_object;
+
+/* Writes objects as a GLB file, each a node with a mesh, normals and a material of its colour. `numbers`, one an object
+ * or NULL, go to the nodes' extras as "label". Vertices are those of the models, so that what is shared by closed
+ * models has the same bits. HEWN_LIMIT for more than 4 GiB or a position that a float cannot hold, before anything is
+ * written; HEWN_INVALID_ARGUMENT for faces that are no triangles; HEWN_IO; HEWN_CANCELLED; HEWN_OUT_OF_MEMORY.
+ * `progress` may be NULL, its stage is "write". */
+HEWN_API hewn_result hewn_objects_write_glb(const hewn_object *objects, size_t count, const int64_t *numbers,
+                                            const char *path, const hewn_progress *progress, hewn_error *error);
 
 #ifdef __cplusplus
 }

@@ -6,6 +6,7 @@
 #include "hewn/extract.h"
 #include "hewn/io.h"
 #include "hewn/scene.h"
+#include "hewn/simplify.h"
 #include "hewn/triangles.h"
 
 #ifdef __cplusplus
@@ -32,12 +33,13 @@ typedef struct hewn_mesh_job_desc {
     uint32_t resolution;     /* cells on the longest side; 0: 128; not together with `cell` */
     double cell;             /* side of a cell in scene units; 0: from `resolution` */
     hewn_method method;
-    bool open;          /* leave the surface open where it leaves the bounds */
-    bool quads;         /* write faces of four corners: for a dual method, and a format that has polygons */
-    double adaptive;    /* how far triangles of dc may move where they are merged, scene units; 0: none are */
+    bool open;       /* leave the surface open where it leaves the bounds */
+    bool quads;      /* write faces of four corners: for a dual method, and a format that has polygons */
+    double adaptive; /* how far triangles of dc may move where they are merged, scene units; 0: none are */
+    const hewn_simplify_desc *simplify; /* lengths in scene units; NULL: no simplification */
     /* Bytes that making the mesh may take, of the device and the host together, see hewn_extract_desc; the mesh is then
-     * made in parts, which wait on disk beside the output, and is the same. Not together with `adaptive`. 0: no limit.
-     * The driver and the program itself are not counted. */
+     * made in parts, which wait on disk beside the output, and is the same. Not together with `adaptive` or `simplify`.
+     * 0: no limit. The driver and the program itself are not counted. */
     uint64_t max_memory;
     const char *device; /* an index or a part of a name; NULL: HEWN_DEVICE from the environment, else the best */
     bool validation;    /* turn the validation layer on; its messages go to stderr and are counted in the report */
@@ -49,8 +51,8 @@ typedef struct hewn_mesh_job_desc {
 
 /* A stage of a job, in seconds since the job began. Stages may overlap. */
 typedef struct hewn_report_stage {
-    char name[16]; /* startup, load, compile, prepare, cull or count, evaluate, extract, read_back, collapse, certify,
-                      write, shutdown */
+    char name[16]; /* startup, load, compile, prepare, cull or count, evaluate, extract, read_back, collapse, simplify,
+                      certify, write, shutdown */
     double begin, end;
 } hewn_report_stage;
 
@@ -82,11 +84,13 @@ typedef struct hewn_report {
     uint32_t threads;    /* asked for; 0 where they were not */
     bool open;
     bool quads;
-    double adaptive; /* asked for; 0 where it was not */
+    double adaptive;     /* asked for; 0 where it was not */
     uint64_t max_memory; /* asked for; 0 where it was not */
     hewn_bounds_source bounds_source;
     hewn_extract_stats extraction; /* bounds, cells, counts of visited cells and bricks */
-    hewn_certificate certificate;  /* of the mesh that was written, with its max_residual */
+    bool simplified;
+    hewn_simplify_report simplify;
+    hewn_certificate certificate; /* of the mesh that was written, with its max_residual (NaN where simplified) */
     uint64_t vertices;
     uint64_t faces;               /* of the file: triangles or, where they were asked for, quads */
     uint64_t peak_host_bytes;     /* most memory that the process had resident so far */

@@ -105,6 +105,25 @@ HEWN_API void hewn_volume_orientation(const hewn_volume *volume, char out[4]);
 /* The box of all samples' places in the world. */
 HEWN_API hewn_box hewn_volume_bounds(const hewn_volume *volume);
 
+/* Spaces that a mesh of a volume may be wanted in. */
+typedef enum hewn_space {
+    HEWN_SPACE_DEFAULT, /* RAS where the volume is anatomical, else the world */
+    HEWN_SPACE_RAS,     /* +x is the patient's right, +y front, +z head */
+    HEWN_SPACE_LPS,     /* +x is the patient's left, +y back, +z head */
+    HEWN_SPACE_VOXEL,   /* (i, j, k) */
+    HEWN_SPACE_GLTF,    /* +x is the patient's left, +y head, +z front; the world itself where not anatomical */
+    HEWN_SPACE_WORLD    /* what the file's world is */
+} hewn_space;
+
+/* "ras", "lps", "voxel", "gltf", "world"; NULL for the default and past the last. And back, in any case. */
+HEWN_API const char *hewn_space_name(hewn_space space);
+HEWN_API bool hewn_space_find(const char *name, hewn_space *out);
+
+/* From (i, j, k, 1) to a space, row by row, positions multiplied by `scale` (but for VOXEL). HEWN_BAD_INPUT for RAS and
+ * LPS of a volume that is not anatomical. */
+HEWN_API hewn_result hewn_volume_bring(const hewn_volume *volume, hewn_space space, double scale, double out[16],
+                                       hewn_error *error);
+
 /* --- what is in it ------------------------------------------------------------------------------------------------ */
 
 /* All functions below read one frame once, with as many threads as OpenMP has, and give the same bits for any number of

@@ -1,6 +1,5 @@
-/* Which instructions of a list the choices leave, from the last one back. A slot of the list may be needed later on,
- * under a number of the shorter list's; four bits each say so. An operand that replaces its combination takes over its
- * number. FIELD_WORDS is given. */
+/* Which instructions of a list choices leave, from the last one back. A slot of the list may be needed later on, under a
+ * number of the shorter list's; four bits each say so. An operand that replaces its combination takes over its number. */
 const uint FIELD_NONE = 15u;
 
 uint field_number(uvec2 map, uint slot)
@@ -20,6 +19,12 @@ struct Keeping {
     uint used; /* numbers in use, a bit each */
 };
 
+/* At a list's end: the root is in slot 0 and goes there. */
+Keeping field_keeping()
+{
+    return Keeping(uvec2(0xFFFFFFF0u, 0xFFFFFFFFu), 1u);
+}
+
 /* Sees to it that a slot's value is made, under the lowest free number if it has none. */
 uint field_ask(inout Keeping state, uint slot)
 {
@@ -35,48 +40,48 @@ uint field_ask(inout Keeping state, uint slot)
     return number;
 }
 
-uint field_keep(hewn_words choices, uint first, bool write, hewn_words to, uint end)
+/* Whether an instruction is kept, and its head then. Choice 1: only a matters; 2: only what its body gives. */
+#if FIELD_SLOTS == 1
+/* One value is made after the other, and only whether it is still needed has to be known. */
+bool field_keeps(inout Keeping state, uint head, uint choice, out uint made)
 {
-    hewn_words code = hewn_words(field_code);
-    Keeping state = Keeping(uvec2(~0u), 1u);
-    state.map.x = 0xFFFFFFF0u; /* the root is in slot 0 and goes there */
-    uint kept = 0u, place = end * FIELD_WORDS, count = (field_end - field_begin) / FIELD_WORDS;
-    for (uint left = count; left > 0u; left--) {
-        uint at = field_begin + (left - 1u) * FIELD_WORDS, head = code.at[at];
-        uint out_slot = head >> 12 & 15u, number = field_number(state.map, out_slot);
-        if (number == FIELD_NONE)
-            continue;
-        uint choice = choices.at[first + ((left - 1u) >> 4)] >> 2u * ((left - 1u) & 15u) & 3u;
-        uint a = head >> 16 & 15u, b = head >> 20 & 15u;
-        state.map = field_renumbered(state.map, out_slot, FIELD_NONE);
-        state.used &= ~(1u << number);
-        bool copies = (head & 255u) == 0u;
-        uint only = choice == 1u ? a : choice == 2u && copies ? b : FIELD_NONE;
-        uint body = head & 255u, how = choice == 2u ? 0u : head >> 8 & 15u;
-        uint from_a = FIELD_NONE, from_b = FIELD_NONE, from_c = FIELD_NONE, from_d = FIELD_NONE;
-        if (only != FIELD_NONE) {
-            from_b = field_number(state.map, only);
-            if (from_b == FIELD_NONE) { /* nobody else wants it: it takes the number over */
-                state.map = field_renumbered(state.map, only, number);
-                state.used |= 1u << number;
-                continue;
-            }
-            body = 0u;
-            how = 0u;
-        } else {
-            if (how != 0u)
-                from_a = field_ask(state, a);
-            from_b = field_ask(state, b);
-            from_c = field_ask(state, head >> 24 & 15u);
-            from_d = field_ask(state, head >> 28);
-        }
-        kept++;
-        if (!write)
-            continue;
-        place -= FIELD_WORDS;
-        to.at[place] = body | how << 8 | number << 12 | from_a << 16 | from_b << 20 | from_c << 24 | from_d << 28;
-        for (uint k = 1u; k < FIELD_WORDS; k++)
-            to.at[place + k] = code.at[at + k];
-    }
-    return kept;
+    bool copies = (head & 255u) == 0u, alone = choice == 2u;
+    bool keeps = state.used != 0u && choice != 1u && !(alone && copies);
+    made = alone ? (head & 0xFFF0F0FFu) | 0x000F0000u : head;
+    state.used = keeps && made >> 16 == 0xFFFFu ? 0u : state.used;
+    return keeps;
 }
+#else
+bool field_keeps(inout Keeping state, uint head, uint choice, out uint made)
+{
+    uint out_slot = head >> 12 & 15u, number = field_number(state.map, out_slot);
+    made = 0u;
+    if (number == FIELD_NONE)
+        return false;
+    uint a = head >> 16 & 15u, b = head >> 20 & 15u;
+    state.map = field_renumbered(state.map, out_slot, FIELD_NONE);
+    state.used &= ~(1u << number);
+    bool copies = (head & 255u) == 0u;
+    uint only = choice == 1u ? a : choice == 2u && copies ? b : FIELD_NONE;
+    uint body = head & 255u, how = choice == 2u ? 0u : head >> 8 & 15u;
+    uint from_a = FIELD_NONE, from_b = FIELD_NONE, from_c = FIELD_NONE, from_d = FIELD_NONE;
+    if (only != FIELD_NONE) {
+        from_b = field_number(state.map, only);
+        if (from_b == FIELD_NONE) { /* nobody else wants it: it takes the number over */
+            state.map = field_renumbered(state.map, only, number);
+            state.used |= 1u << number;
+            return false;
+        }
+        body = 0u;
+        how = 0u;
+    } else {
+        if (how != 0u)
+            from_a = field_ask(state, a);
+        from_b = field_ask(state, b);
+        from_c = field_ask(state, head >> 24 & 15u);
+        from_d = field_ask(state, head >> 28);
+    }
+    made = body | how << 8 | number << 12 | from_a << 16 | from_b << 20 | from_c << 24 | from_d << 28;
+    return true;
+}
+#endif

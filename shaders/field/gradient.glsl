@@ -174,6 +174,16 @@ precise vec4 f_min(const vec4 a, const float b)
     return f_min(a, vec4(vec3(0.0), b));
 }
 
+precise vec4 f_lesser(const vec4 a, const vec4 b)
+{
+    return f_choose(b.w < a.w, b, a);
+}
+
+precise vec4 f_lesser(const vec4 a, const float b)
+{
+    return f_lesser(a, vec4(vec3(0.0), b));
+}
+
 //: max
 precise vec4 f_max(const vec4 a, const vec4 b)
 {
@@ -184,6 +194,16 @@ precise vec4 f_max(const vec4 a, const vec4 b)
 precise vec4 f_max(const vec4 a, const float b)
 {
     return f_max(a, vec4(vec3(0.0), b));
+}
+
+precise vec4 f_greater(const vec4 a, const vec4 b)
+{
+    return f_choose(b.w > a.w, b, a);
+}
+
+precise vec4 f_greater(const vec4 a, const float b)
+{
+    return f_greater(a, vec4(vec3(0.0), b));
 }
 
 //: mod round

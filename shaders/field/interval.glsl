@@ -110,19 +110,18 @@ vec3 f_middle(const vec2 x, const vec2 y, const vec2 z)
     return vec3(0.5 * x.x + 0.5 * x.y, 0.5 * y.x + 0.5 * y.y, 0.5 * z.x + 0.5 * z.y);
 }
 
-/* What is in `bounds` and as near to the value in the middle of the box as slope and errors allow. The value of a shape
- * in an affine frame errs by at most 22 units of the sum of what its coordinates and parameters are made of (5 for its
- * coordinates, times the root of 3, and 13 for itself), twice; a length by 7 of its own. */
-precise vec2 f_about(const vec2 bounds, const float value, const vec3 middle, const vec2 x, const vec2 y, const vec2 z,
-                     const float slope, const float factors, const float rest)
+/* As near to the value in the middle of the box as slope and errors allow. The value of a shape in an affine frame errs by
+ * at most 22 units of the sum of what its coordinates and parameters are made of (5 for its coordinates, times the root of
+ * 3, and 13 for itself), twice; a length by 7 of its own. */
+precise vec2 f_about(const float value, const vec3 middle, const vec2 x, const vec2 y, const vec2 z, const float slope,
+                     const float factors, const float rest)
 {
     precise vec3 low = middle - vec3(x.x, y.x, z.x), high = vec3(x.y, y.y, z.y) - middle;
     vec3 side = mix(low, high, greaterThan(high, low)), size = max(abs(low), abs(high)) + abs(middle);
     precise float reach = sqrt(side.x * side.x + side.y * side.y + side.z * side.z) * slope * 1.000004;
     precise float far = size.x + size.y + size.z;
     precise float room = reach + (factors * far + rest) * (64.0 * F_U) + 1e-18;
-    precise float least = value - room, most = value + room;
-    return vec2(f_pick(least > bounds.x, least, bounds.x), f_pick(most < bounds.y, most, bounds.y));
+    return f_apart(vec2(value), vec2(room));
 }
 
 //: length

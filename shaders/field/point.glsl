@@ -327,11 +327,22 @@ float f_min(const float a, const float b)
     return f_pick(less || unknown, b, a);
 }
 
+/* The same of what is no NaN, for half the price. */
+float f_lesser(const float a, const float b)
+{
+    return f_pick(b < a, b, a);
+}
+
 //: max
 float f_max(const float a, const float b)
 {
     bool unknown = f_is_nan(b), more = b > a;
     return f_pick(more || unknown, b, a);
+}
+
+float f_greater(const float a, const float b)
+{
+    return f_pick(b > a, b, a);
 }
 
 //: mod

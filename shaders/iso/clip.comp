@@ -63,6 +63,4 @@ void main()
         return;
     push.states.at[at] = HEWN_ALL_OUTSIDE;
     push.flags.at[at] = 0u;
-    if (push.listed != 0u)
-        push.lengths.at[at] = 0u;
 }

@@ -55,7 +55,7 @@ void main()
     uint slot = invocation();
     if (slot >= push.count)
         return;
-    spread_vertices(push.edges, push.points, slot, push.crossing_bases.at[slot]);
+    spread_vertices(push.edges, push.points, slot, push.bricks.at[slot], push.crossing_bases.at[slot]);
     uvec3 first = 8u * unpack_brick(push.bricks.at[slot]);
     uvec3 cells = uvec3(push.cells[0], push.cells[1], push.cells[2]);
     uint link = slot * HEWN_BRICK_LINKS;

@@ -43,7 +43,7 @@ void main()
     uint slot = invocation();
     if (slot >= push.count)
         return;
-    spread_vertices(push.edges, push.vertices, slot, push.vertex_bases.at[slot]);
+    spread_vertices(push.edges, push.vertices, slot, push.bricks.at[slot], push.vertex_bases.at[slot]);
     asked = push.ranks.at[slot];
     triangle = push.triangle_bases.at[slot];
     centre = push.first + push.centre_bases.at[slot];

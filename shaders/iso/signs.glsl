@@ -1,4 +1,5 @@
-/* Evaluates the samples of active bricks and keeps one bit of each: one invocation a sign word, four rows of eight. */
+/* Evaluates the samples of active bricks and keeps one bit of each: one invocation a sign word, four rows of eight, or where
+ * subgroups read lists together two of them. */
 #include "iso/grid.h"
 
 layout(local_size_x = 64) in;
@@ -6,6 +7,9 @@ layout(push_constant, scalar) uniform Push
 {
     hewn_sign_push push;
 };
+
+/* From so many instructions on it pays to ask which of them matter to a few words. */
+const uint LONG = 24u;
 
 float sample_x(uint i)
 {
@@ -23,12 +27,8 @@ uint counting(uint axis, uint first)
     return mask;
 }
 
-void main()
+void find_word(uvec3 first, uint word, uint at)
 {
-    /* Nobody leaves before the field is evaluated: subgroups may do that together. */
-    uint own = invocation(), at = min(own, push.count * HEWN_BRICK_WORDS - 1u);
-    uvec3 first = 8u * unpack_brick(push.bricks.at[at / HEWN_BRICK_WORDS]);
-    uint word = at % HEWN_BRICK_WORDS;
     uint layer = word >> 1, row = 4u * (word & 1u);
     uint columns = counting(0u, first.x), rows = counting(1u, first.y) >> row;
     bool layer_counts = (counting(2u, first.z) >> layer & 1u) != 0u;
@@ -39,8 +39,24 @@ void main()
         y[i] = sample_coordinate(push.grid, 1u, first.y + row + i);
         counts |= layer_counts && (rows >> i & 1u) != 0u ? columns << 8u * i : 0u;
     }
-    field_select(at / HEWN_BRICK_WORDS);
-    uint inside = field_word_inside(first.x, y, z) & counts;
-    if (own == at)
-        push.signs.at[at] = inside;
+    field_narrow(vec2(sample_x(first.x), sample_x(first.x + 7u)), vec2(y.x, y.w), vec2(z), counts != 0u, LONG);
+    push.signs.at[at] = field_word_inside(first.x, y, z) & counts;
+}
+
+void main()
+{
+#ifdef FIELD_TOGETHER
+    const uint each = 2u;
+#else
+    const uint each = 1u;
+#endif
+    uint a_brick = HEWN_BRICK_WORDS / each, own = invocation(), slot = own / a_brick;
+    if (slot >= push.count) /* all of a brick's invocations */
+        return;
+    uvec3 first = 8u * unpack_brick(push.bricks.at[slot]);
+    field_select(slot);
+    for (uint i = 0u; i < each; i++) {
+        uint word = own % a_brick + i * a_brick;
+        find_word(first, word, slot * HEWN_BRICK_WORDS + word);
+    }
 }

@@ -58,6 +58,6 @@ void main()
     uint slot = invocation();
     if (slot >= push.count)
         return;
-    spread_vertices(push.edges, push.vertices, slot, push.vertex_bases.at[slot]);
+    spread_vertices(push.edges, push.vertices, slot, push.bricks.at[slot], push.vertex_bases.at[slot]);
     spread_triangles(slot);
 }

@@ -1,4 +1,4 @@
-/* GLSL only: records of the vertices on a brick's edges. */
+/* GLSL only: records of the vertices on a brick's edges. `packed`: the brick's coordinates. */
 #ifndef HEWN_SHADERS_ISO_SPREAD_H
 #define HEWN_SHADERS_ISO_SPREAD_H
 
@@ -6,7 +6,7 @@
 
 /* Steps through the brick's words and their bits in one loop, so that lanes with many bits in one word do not hold the
  * others up. */
-void spread_vertices(Uints edges, Uints vertices, uint slot, uint vertex)
+void spread_vertices(Uints edges, Uints vertices, uint slot, uint packed, uint vertex)
 {
     uint word = 0u, mask = 0u;
     uint pair = 2u * slot * HEWN_BRICK_EDGE_WORDS;
@@ -18,7 +18,7 @@ void spread_vertices(Uints edges, Uints vertices, uint slot, uint vertex)
             word++;
         }
         if (mask != 0u) {
-            vertices.at[3u * vertex] = slot;
+            vertices.at[3u * vertex] = packed;
             vertices.at[3u * vertex + 1u] = 32u * (word - 1u) + uint(findLSB(mask));
             mask &= mask - 1u;
             vertex++;

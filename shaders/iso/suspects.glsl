@@ -125,6 +125,13 @@ void add_to(uint which, uint count)
         atomicAdd(push.counts.at[which + 1u], 1u);
 }
 
+/* Subgroups that read a list together stay until the last one is done. */
+#ifdef FIELD_TOGETHER
+#define somebody(condition) subgroupAny(condition)
+#else
+#define somebody(condition) (condition)
+#endif
+
 void main()
 {
     uint block = invocation();
@@ -142,20 +149,22 @@ void main()
     bool inside = are_inside(left, slot, corner);
     uvec3 origin = first * PARTS_A_CELL, limit = cells * PARTS_A_CELL;
     uvec2 box = left == uvec2(0u) ? uvec2(0u, END) : uvec2(0u);
-    while (box.y < END) {
+    while (somebody(box.y < END)) {
+        bool on = box.y < END;
         vec2 range = ask(box, left, origin, limit);
         asked++;
         bool clear = inside ? range.y < 0.0 : range.x >= 0.0;
         bool smallest = box.x >= (asked < MOST_ASKED ? PARTS : CELLS);
-        bool found = !clear && smallest, endless = f_is_endless(range);
+        bool found = on && !clear && smallest, endless = f_is_endless(range);
         uvec2 cells = box_cells(box);
         suspects |= found && !endless ? cells : uvec2(0u);
         undefined += found && endless ? 1u : 0u;
         uvec2 next = next_box(box);
         bool over = found || (clear && next.x <= CELLS); /* with all its cells */
-        left &= over ? ~cells : uvec2(~0u);
+        left &= on && over ? ~cells : uvec2(~0u);
         uvec2 child = box.x == 0u ? first_box(left) : uvec2(box.x + 1u, box.y);
-        box = over ? first_box(left) : clear ? next : child;
+        uvec2 other = over ? first_box(left) : clear ? next : child;
+        box = on ? other : box;
     }
     push.marks.at[2u * block] = suspects.x;
     push.marks.at[2u * block + 1u] = suspects.y;

@@ -1,18 +1,13 @@
-/* Solves each crossing on the field itself, and takes its normal from the exact gradient there: one invocation a vertex. */
+/* Solves each crossing on the field itself, and takes its normal from the exact gradient there: one invocation for
+ * HEWN_VERTICES_EACH of them. */
 #include "iso/grid.h"
+#include "iso/root_search.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {
     hewn_vertex_push push;
 };
-
-/* No vertex comes nearer to a grid point than this share of a cell, so that no two of them fall together. */
-const float NEAREST = 1.25 / 4096.0;
-/* A value that the edge's mean slope takes back in this share of a cell ends the search. */
-const float NEAR_ENOUGH = 1.0e-5;
-const uint MOST_TRIALS = 24u;
-const float CORRECTED = 1.0e-3; /* of a cell: a place that is farther off than this lies on no surface */
 
 float value_along(vec3 start, uint axis, float side, float t)
 {
@@ -21,40 +16,15 @@ float value_along(vec3 start, uint axis, float side, float t)
     return field_point(at.x, at.y, at.z);
 }
 
-bool finite(float value)
+/* Nothing is searched where the root is `known`. */
+float crossing(vec3 start, uint axis, float side, float at_start, float at_end, bool known)
 {
-    return abs(value) <= 3.0e38;
-}
-
-/* Where the field changes sign along the edge, as a share of it. False position with the Illinois weight (Dowell and Jarratt 1971),
- * halving where the values give no better guess; the bracket always holds an inside end and an outside end. */
-float crossing(vec3 start, uint axis, float side, float at_start, float at_end)
-{
-    float a = 0.0, b = 1.0, fa = at_start, fb = at_end, guess = 0.5;
-    float enough = NEAR_ENOUGH * abs(at_end - at_start);
-    bool start_inside = at_start < 0.0;
-    int kept = 0;
-    for (uint trial = 0u; trial < MOST_TRIALS; trial++) {
-        float slope = fb - fa;
-        guess = a - fa * (b - a) / slope;
-        if (!(finite(slope) && guess > a && guess < b) || trial > 8u)
-            guess = 0.5 * (a + b);
-        float value = value_along(start, axis, side, guess);
-        if (abs(value) <= enough || b - a < 2.0e-6)
-            break;
-        if ((value < 0.0) == start_inside) {
-            a = guess;
-            fa = value;
-            fb = kept == 1 ? 0.5 * fb : fb;
-            kept = 1;
-        } else {
-            b = guess;
-            fb = value;
-            fa = kept == 2 ? 0.5 * fa : fa;
-            kept = 2;
-        }
+    Search search = search_begin(start[axis], start[axis] + side, at_start, at_end, known);
+    for (uint trial = 0u; trial < MOST_TRIALS && !search.settled; trial++) {
+        next_guess(search, trial);
+        take_value(search, value_along(start, axis, side, search.guess));
     }
-    return guess;
+    return search.guess;
 }
 
 void write_vertex(uint vertex, vec3 at, vec3 normal)
@@ -65,16 +35,13 @@ void write_vertex(uint vertex, vec3 at, vec3 normal)
     }
 }
 
-void main()
+/* A crossing's vertex; the residual grows, or the number of vertices that were cut off at the bounds. */
+void solve(uint vertex, inout float most, inout uint caps)
 {
-    uint vertex = invocation();
-    if (vertex >= push.count)
-        return;
-    uint slot = floatBitsToUint(push.positions.at[3u * vertex]);
+    uint brick = floatBitsToUint(push.positions.at[3u * vertex]);
     uint record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
     uint axis = record >> 9;
-    field_select(slot);
-    uvec3 first = 8u * unpack_brick(push.bricks.at[slot]) + (uvec3(record, record >> 3, record >> 6) & 7u);
+    uvec3 first = 8u * unpack_brick(brick) + (uvec3(record, record >> 3, record >> 6) & 7u);
     vec3 start;
     for (uint i = 0u; i < 3u; i++)
         start[i] = sample_coordinate(push.grid, i, first[i]);
@@ -84,29 +51,42 @@ void main()
     precise vec3 last = start;
     last[axis] = end;
     float at_end = field_point(last.x, last.y, last.z);
-    bool capped = push.grid.open == 0u;
-    bool cap_start = capped && first[axis] == 0u && at_start < 0.0;
-    bool cap_end = capped && first[axis] + 1u == push.grid.cells[axis] && at_end < 0.0;
+    bool closed = push.grid.open == 0u;
+    bool cap_start = closed && first[axis] == 0u && at_start < 0.0;
+    bool cap_end = closed && first[axis] + 1u == push.grid.cells[axis] && at_end < 0.0;
+    bool capped = cap_start || cap_end;
     vec3 outward = vec3(0.0);
     outward[axis] = cap_start || (!cap_end && at_end < 0.0) ? -1.0 : 1.0;
-    if (cap_start || cap_end) {
-        write_vertex(vertex, cap_start ? start : last, outward);
-        atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], 1u);
-        return;
-    }
     float least = push.dual != 0u ? 0.0 : NEAREST;
-    float t = clamp(crossing(start, axis, side, at_start, at_end), least, 1.0 - least);
+    float t = clamp(crossing(start, axis, side, at_start, at_end, capped), least, 1.0 - least);
     precise vec3 at = start;
-    at[axis] = start[axis] + side * t;
+    at[axis] = capped ? (cap_start ? start[axis] : end) : start[axis] + side * t;
     vec4 gradient = field_gradient(at.x, at.y, at.z);
     float size = length(gradient.xyz);
-    bool sloped = finite(size) && size > 0.0;
+    bool sloped = !capped && finite(size) && size > 0.0;
     /* Dual methods ask for the tangent plane, not for the place on the edge: what the search left is taken off. */
     float off = gradient.w / size;
     if (push.dual != 0u && sloped && abs(off) <= push.grid.cell * CORRECTED)
         at -= off * (gradient.xyz / size);
+    /* Written in one place: a CPU driver runs each write for all lanes, and writing costs more than most fields. */
     write_vertex(vertex, at, sloped ? gradient.xyz / size : outward);
-    float residual = abs(gradient.w) / (size * push.grid.cell);
-    if (sloped && finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
-        atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
+    float residual = sloped ? abs(gradient.w) / (size * push.grid.cell) : 0.0;
+    most = finite(residual) ? max(most, residual) : most;
+    caps += capped ? 1u : 0u;
+}
+
+void main()
+{
+    uint local = gl_LocalInvocationID.x, begin = HEWN_VERTICES_EACH * (invocation() - local) + local;
+    float most = 0.0;
+    uint caps = 0u;
+    for (uint i = 0u; i < HEWN_VERTICES_EACH; i++) {
+        uint vertex = begin + gl_WorkGroupSize.x * i;
+        if (vertex < push.count)
+            solve(vertex, most, caps);
+    }
+    if (caps != 0u)
+        atomicAdd(push.summary.at[HEWN_SUMMARY_CAPS], caps);
+    if (floatBitsToUint(most) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
+        atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(most));
 }

@@ -1,6 +1,7 @@
 /* As vertices.glsl, with the same arithmetic for each vertex, for fields in lists: an invocation solves four vertices of
  * a brick at once, so that one walk over its list serves them all. */
 #include "iso/grid.h"
+#include "iso/root_search.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
@@ -8,11 +9,7 @@ layout(push_constant, scalar) uniform Push
     hewn_listed_vertex_push push;
 };
 
-const float NEAREST = 1.25 / 4096.0;
-const float NEAR_ENOUGH = 1.0e-5;
-const float CORRECTED = 1.0e-3; /* of a cell: a place that is farther off than this lies on no surface */
-const uint MOST_TRIALS = 24u;
-const uint A_BRICK = 16u; /* invocations */
+const uint A_BRICK = 8u; /* invocations */
 
 struct Edge {
     vec3 start;
@@ -22,11 +19,6 @@ struct Edge {
 };
 
 Edge edges[4];
-
-bool finite(float value)
-{
-    return abs(value) <= 3.0e38;
-}
 
 #ifdef FIELD_TOGETHER
 #define all_agree(condition) subgroupAll(condition)
@@ -63,42 +55,13 @@ vec4 values_at(vec3 at[4])
                         vec4(at[0].z, at[1].z, at[2].z, at[3].z));
 }
 
-/* One false position or halving each, as crossing() in vertices.glsl. What is settled stays. */
-struct Search {
-    float a, b, fa, fb, guess, enough;
-    bool start_inside, settled;
-    int kept;
-};
-
 Search searches[4];
-
-void next_guess(inout Search s, uint trial)
-{
-    float slope = s.fb - s.fa;
-    float guess = s.a - s.fa * (s.b - s.a) / slope;
-    bool useful = finite(slope) && guess > s.a && guess < s.b;
-    guess = !useful || trial > 8u ? 0.5 * (s.a + s.b) : guess;
-    s.guess = s.settled ? s.guess : guess;
-}
-
-void narrow(inout Search s, float value)
-{
-    s.settled = s.settled || abs(value) <= s.enough || s.b - s.a < 2.0e-6;
-    bool low = (value < 0.0) == s.start_inside, on = !s.settled;
-    float fa = low ? value : s.kept == 2 ? 0.5 * s.fa : s.fa;
-    float fb = low ? (s.kept == 1 ? 0.5 * s.fb : s.fb) : value;
-    s.fa = on ? fa : s.fa;
-    s.fb = on ? fb : s.fb;
-    s.a = on && low ? s.guess : s.a;
-    s.b = on && !low ? s.guess : s.b;
-    s.kept = on ? (low ? 1 : 2) : s.kept;
-}
 
 void solve(vec4 at_start, vec4 at_end, uint count)
 {
     for (uint k = 0u; k < 4u; k++)
-        searches[k] = Search(0.0, 1.0, at_start[k], at_end[k], 0.5, NEAR_ENOUGH * abs(at_end[k] - at_start[k]),
-                             at_start[k] < 0.0, k >= count, 0);
+        searches[k] = search_begin(edges[k].start[edges[k].axis], edges[k].end, at_start[k], at_end[k],
+                                   k >= count);
     bool settled = false;
     for (uint trial = 0u; trial < MOST_TRIALS && !all_agree(settled); trial++) {
         vec3 at[4];
@@ -109,7 +72,7 @@ void solve(vec4 at_start, vec4 at_end, uint count)
         vec4 values = values_at(at);
         settled = true;
         for (uint k = 0u; k < 4u; k++) {
-            narrow(searches[k], values[k]);
+            take_value(searches[k], values[k]);
             settled = settled && searches[k].settled;
         }
     }
@@ -148,6 +111,17 @@ void write_solved(uint vertex, const Edge edge, vec3 at, vec4 gradient, float at
         atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
 }
 
+/* Leaves out of the list what is needed on none of these edges. */
+void narrow(const vec3 starts[4], const vec3 ends[4], uint count)
+{
+    vec3 lo = min(starts[0], ends[0]), hi = max(starts[0], ends[0]);
+    for (uint k = 1u; k < 4u; k++) {
+        lo = k < count ? min(lo, min(starts[k], ends[k])) : lo;
+        hi = k < count ? max(hi, max(starts[k], ends[k])) : hi;
+    }
+    field_narrow(vec2(lo.x, hi.x), vec2(lo.y, hi.y), vec2(lo.z, hi.z), count > 0u, 2u);
+}
+
 void solve_four(uint first, uint end, uvec3 base)
 {
     vec3 starts[4], ends[4], found[4];
@@ -157,6 +131,7 @@ void solve_four(uint first, uint end, uvec3 base)
         ends[k] = edges[k].start;
         ends[k][edges[k].axis] = edges[k].end;
     }
+    narrow(starts, ends, first < end ? min(end - first, 4u) : 0u);
     vec4 at_start = values_at(starts), at_end = values_at(ends);
     solve(at_start, at_end, first < end ? end - first : 0u);
     float least = push.dual != 0u ? 0.0 : NEAREST;

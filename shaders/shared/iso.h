@@ -69,11 +69,9 @@ struct hewn_clip_push {
     HEWN_UINT below;  /* levels below that */
     HEWN_UINT begin;  /* the part's own bricks are those from `begin` */
     HEWN_UINT end;    /* up to before `end` */
-    HEWN_UINT listed; /* 1: `lengths` is there */
     HEWN_UINTS parents;
-    HEWN_UINTS states;  /* blocks taken back become stand-ins, */
-    HEWN_UINTS flags;   /* 0, */
-    HEWN_UINTS lengths; /* and 0 */
+    HEWN_UINTS states; /* blocks taken back become stand-ins, */
+    HEWN_UINTS flags;  /* and 0 */
 };
 
 /* What the device knows of a level: 32-bit words at these places. The levels' words follow each other, so a level also
@@ -122,15 +120,17 @@ struct hewn_spread_push {
     HEWN_UINTS edges; /* in: the masks; out: the numbers of vertices */
     HEWN_UINTS vertex_bases;
     HEWN_UINTS triangle_bases;
-    HEWN_UINTS vertices; /* out: slot and 512 * axis + sample in the first two words of each position */
+    HEWN_UINTS vertices; /* out: brick (packed) and 512 * axis + sample in the first two words of each position */
     HEWN_UINTS indices;  /* out: slot, sample + 512 * pattern + 131072 * triangle in each triangle's first two words */
 };
+
+/* Vertices that an invocation solves one after the other. */
+#define HEWN_VERTICES_EACH 16u
 
 struct hewn_vertex_push {
     HEWN_GRID grid;
     HEWN_UINT count;
-    HEWN_UINT dual; /* 1: crossings are not the mesh's vertices, and need not keep away from grid points */
-    HEWN_UINTS bricks;
+    HEWN_UINT dual;        /* 1: crossings are not the mesh's vertices, and need not keep away from grid points */
     HEWN_FLOATS positions; /* in: records; out: positions */
     HEWN_FLOATS normals;   /* out */
     HEWN_UINTS summary;    /* HEWN_SUMMARY_WORDS */

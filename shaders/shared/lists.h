@@ -5,7 +5,7 @@
 
 #include "shared/iso.h"
 
-/* Culls, and counts what the lists of the blocks that are kept will hold. */
+/* Culls, and notes what the lists of the blocks that are kept will hold: four blocks an invocation. */
 struct hewn_choose_push {
     HEWN_GRID grid;
     HEWN_UINT size;
@@ -16,7 +16,6 @@ struct hewn_choose_push {
     HEWN_UINTS parent_ranges; /* of their lists; none on the top level, where it is the whole field's */
     HEWN_UINTS states;        /* out, a block tested: a stand-in, or 0 where it is kept */
     HEWN_UINTS flags;         /* out, a block tested: 1 where it is kept */
-    HEWN_UINTS lengths;       /* out, a block tested: instructions of its list */
     HEWN_UINTS choices;       /* out */
 };
 
@@ -31,19 +30,20 @@ struct hewn_gather_push {
     HEWN_UINTS origins; /* out, a kept block: its number among those tested */
 };
 
-/* Writes the lists of the blocks that are kept. */
+/* Counts the instructions of the lists of the blocks that are kept, or writes them. */
 struct hewn_keep_push {
-    HEWN_UINT count;
     HEWN_UINT dense; /* 1 on the top level */
+    HEWN_UINT write;
+    HEWN_UINTS kept; /* how many blocks are kept */
     HEWN_UINTS parent_ranges;
     HEWN_UINTS origins;
-    HEWN_UINTS places; /* the lengths, summed, and one more: the total */
+    HEWN_UINTS places; /* out where they are counted: the lengths; in where they are written: these summed, and the total */
     HEWN_UINTS choices;
     HEWN_UINTS lists;  /* out */
     HEWN_UINTS ranges; /* out, a kept block: first instruction and count */
 };
 
-/* Solves vertices, four an invocation, sixteen invocations a brick. */
+/* Solves vertices, four an invocation, eight invocations a brick. */
 struct hewn_listed_vertex_push {
     HEWN_GRID grid;
     HEWN_UINT count; /* bricks */

@@ -14,6 +14,10 @@ static const hewn_option options[] = {
      "no-degenerate-faces, no-duplicate-faces, no-isolated-vertices, one-component, positive-volume; with commas "
      "between."},
     {0, "no-self-intersections", NULL, "Do not count self-intersections, which takes the longest."},
+    {0, "against", "FILE",
+     "Tell also how far the surface is from that of another mesh file: the two-sided Hausdorff distance, proven for "
+     "all "
+     "points of both."},
     {0, "json", NULL, "Print JSON."},
     HEWN_OPTION_FROM,
     HEWN_OPTION_QUIET,
@@ -25,6 +29,11 @@ static hewn_result read_request(const hewn_arguments *arguments, hewn_examinatio
     const char *from = hewn_arguments_value(arguments, "from");
     const char *require = hewn_arguments_value(arguments, "require");
     HEWN_TRY(hewn_input_argument_read(arguments, &job->path, error));
+    job->against = hewn_arguments_value(arguments, "against");
+    if (job->against && !job->against[0])
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
+    if (job->against && strcmp(job->against, "-") == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--against takes a file, not standard input");
     if (from)
         HEWN_TRY(hewn_format_parse(from, "--from", &job->format, error));
     if (require) {
@@ -46,6 +55,9 @@ static void print_text(const hewn_examination *job)
            (unsigned long long)check->vertex_count, (unsigned long long)check->face_count,
            job->model.unit ? ", in " : "", job->model.unit ? job->model.unit->name : "");
     hewn_certificate_print(check, stdout);
+    if (job->against)
+        printf("distance               at most %.6g, at least %.6g: %.6g from here to %s, %.6g back\n",
+               job->distance.high, job->distance.low, job->distance.there, job->against, job->distance.back);
 }
 
 /* Says what does not hold, in one line; the exit code. */
@@ -106,6 +118,7 @@ const hewn_command hewn_command_check = {
     .after = "Examples:\n"
              "  hewn check part.stl\n"
              "  hewn check part.glb --quiet --require closed,manifold,oriented\n"
-             "  hewn check scan.ply.gz --json --no-self-intersections > scan.json\n",
+             "  hewn check scan.ply.gz --json --no-self-intersections > scan.json\n"
+             "  hewn check small.glb --against scan.ply\n",
     .run = run,
 };

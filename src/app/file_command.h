@@ -11,6 +11,7 @@ typedef struct hewn_file_steps {
     hewn_repair_desc repair;
     hewn_file_smooth smooth;
     hewn_file_subdivide subdivide;
+    hewn_simplify_desc simplify;
 } hewn_file_steps;
 
 /* What is a command's own. `read` takes its options and points `desc` to those `steps` that it filled in;

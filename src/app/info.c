@@ -213,19 +213,6 @@ static hewn_result run_mesh(const hewn_arguments *arguments, hewn_mesh_format fo
     return hewn_mesh_tell(path, format, hewn_arguments_has(arguments, "json"), error);
 }
 
-/* Whether the file is to be read as a volume. Who says what a raw file holds means one. */
-static bool wants_volume(const hewn_arguments *arguments, hewn_volume_format *format)
-{
-    const char *from = hewn_arguments_value(arguments, "from");
-    const char *path = arguments->operand_count > 0 ? arguments->operands[0] : "";
-    *format = HEWN_VOLUME_UNKNOWN;
-    if (from)
-        return hewn_volume_format_find(from, format);
-    if (hewn_volume_format_of_file(path) == HEWN_VOLUME_UNKNOWN && hewn_arguments_has(arguments, "dims"))
-        *format = HEWN_VOLUME_RAW;
-    return *format == HEWN_VOLUME_RAW || hewn_volume_format_of_file(path) != HEWN_VOLUME_UNKNOWN;
-}
-
 static hewn_result run_volume(const hewn_arguments *arguments, hewn_volume_format format, hewn_error *error)
 {
     const char *path;
@@ -258,7 +245,7 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
     hewn_result result = HEWN_OK;
     if (wants_mesh(arguments, &format))
         result = run_mesh(arguments, format, &error);
-    else if (wants_volume(arguments, &volume))
+    else if (hewn_volume_arguments_wanted(arguments, &volume))
         result = run_volume(arguments, volume, &error);
     else
         result = run_scene(arguments, &error);

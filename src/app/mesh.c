@@ -7,6 +7,7 @@
 #include "app/file_arguments.h"
 #include "app/number.h"
 #include "app/scene_arguments.h"
+#include "app/simplify_arguments.h"
 #include "base/error.h"
 
 static const hewn_option options[] = {
@@ -25,6 +26,7 @@ static const hewn_option options[] = {
      "Merge the triangles of dc to fewer and larger ones, as far as the surface moves by no more than ERROR, a length "
      "in "
      "the scene's units."},
+    HEWN_OPTION_SIMPLIFY,
     {0, "bounds", "BOX",
      "Look for the surface in BOX = x0,y0,z0,x1,y1,z1. Default: the scene's own bounds, else found from the field."},
     {0, "open", NULL, "Leave the surface open where it leaves the bounds. Default: close it there with a flat cap."},
@@ -50,6 +52,7 @@ typedef struct mesh_request {
     hewn_mesh_job_desc desc;
     hewn_scene_arguments scene;
     hewn_box bounds;
+    hewn_simplify_desc simplify;
     bool quiet;
     bool watch;
 } mesh_request;
@@ -135,7 +138,7 @@ static hewn_result read_device(const hewn_arguments *arguments, mesh_request *re
     request->desc.device = hewn_arguments_value(arguments, "device");
     request->desc.validation = validation && validation[0] && strcmp(validation, "0") != 0;
     if (memory)
-        HEWN_TRY(hewn_size_parse(memory, "--max-memory", &request->desc.max_memory, error));
+        HEWN_TRY(hewn_bytes_parse(memory, "--max-memory", &request->desc.max_memory, error));
     if (!threads)
         return HEWN_OK;
     HEWN_TRY(hewn_count_parse(threads, "--threads", 1, &request->desc.threads, error));
@@ -150,6 +153,10 @@ static hewn_result read_request(const hewn_arguments *arguments, mesh_request *r
     request->desc.scene = request->scene.desc;
     HEWN_TRY(read_grid(arguments, request, error));
     HEWN_TRY(read_output(arguments, request, error));
+    bool simplify;
+    HEWN_TRY(hewn_simplify_target_read(arguments, &request->simplify, &simplify, error));
+    request->simplify.measure = request->desc.report != NULL;
+    request->desc.simplify = simplify ? &request->simplify : NULL;
     return read_device(arguments, request, error);
 }
 
@@ -200,6 +207,8 @@ static void print_summary(const hewn_report *report)
     fprintf(stderr, "\n  %llu x %llu x %llu cells of %.6g%s%s, %.2f s on %s\n", (unsigned long long)grid->cells[0],
             (unsigned long long)grid->cells[1], (unsigned long long)grid->cells[2], grid->cell,
             report->units[0] ? " " : "", report->units, report->seconds, report->device.name);
+    if (report->simplified)
+        hewn_simplify_print(&report->simplify);
     if (grid->left_bounds)
         fprintf(stderr, "hewn: note: the surface reaches the bounds and was %s there; wider --bounds keep it whole\n",
                 report->open ? "left open" : "closed with a flat cap");

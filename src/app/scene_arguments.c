@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "app/file_arguments.h"
 #include "app/number.h"
 #include "base/alloc.h"
 #include "base/error.h"
@@ -40,7 +41,7 @@ static hewn_result read_settings(const hewn_arguments *arguments, hewn_scene_arg
     return HEWN_OK;
 }
 
-hewn_result hewn_scene_arguments_read(const hewn_arguments *arguments, hewn_scene_arguments *out, hewn_error *error)
+static hewn_result read_operand(const hewn_arguments *arguments, hewn_scene_arguments *out, hewn_error *error)
 {
     *out = (hewn_scene_arguments){0};
     if (arguments->operand_count == 0)
@@ -49,8 +50,12 @@ hewn_result hewn_scene_arguments_read(const hewn_arguments *arguments, hewn_scen
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "one file at a time, please; '%s' is one too many",
                          arguments->operands[1]);
     out->desc.path = arguments->operands[0];
-    if (!out->desc.path[0])
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
+    return out->desc.path[0] ? HEWN_OK : hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
+}
+
+hewn_result hewn_scene_arguments_read(const hewn_arguments *arguments, hewn_scene_arguments *out, hewn_error *error)
+{
+    HEWN_TRY(read_operand(arguments, out, error));
     const char *format = hewn_arguments_value(arguments, "from");
     if (format && strcmp(format, "lua") != 0 && strcmp(format, "vm") != 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--from is lua or vm, not '%s'", format);
@@ -60,6 +65,17 @@ hewn_result hewn_scene_arguments_read(const hewn_arguments *arguments, hewn_scen
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "standard input has no extension: say --from lua or --from vm");
     out->desc.allow_path = hewn_arguments_has(arguments, "allow-path");
     return read_settings(arguments, out, error);
+}
+
+hewn_result hewn_scene_arguments_read_mesh_too(const hewn_arguments *arguments, hewn_scene_arguments *out,
+                                               hewn_mesh_format *mesh, hewn_error *error)
+{
+    const char *format = hewn_arguments_value(arguments, "from");
+    *mesh = HEWN_MESH_UNKNOWN;
+    if (!format || strcmp(format, "lua") == 0 || strcmp(format, "vm") == 0)
+        return hewn_scene_arguments_read(arguments, out, error);
+    HEWN_TRY(read_operand(arguments, out, error));
+    return hewn_format_parse(format, "--from", mesh, error);
 }
 
 void hewn_scene_arguments_destroy(hewn_scene_arguments *scene)

@@ -3,6 +3,7 @@
 #define HEWN_SRC_APP_SCENE_ARGUMENTS_H
 
 #include "app/options.h"
+#include "hewn/io.h"
 #include "hewn/scene.h"
 
 typedef struct hewn_scene_arguments {
@@ -14,6 +15,10 @@ typedef struct hewn_scene_arguments {
 
 /* Takes the one operand and these options. HEWN_INVALID_ARGUMENT, HEWN_OUT_OF_MEMORY; destroy in any case. */
 hewn_result hewn_scene_arguments_read(const hewn_arguments *arguments, hewn_scene_arguments *out, hewn_error *error);
+
+/* The same where the operand may also be a mesh, which --from may say: `*mesh` is then its format. */
+hewn_result hewn_scene_arguments_read_mesh_too(const hewn_arguments *arguments, hewn_scene_arguments *out,
+                                               hewn_mesh_format *mesh, hewn_error *error);
 void hewn_scene_arguments_destroy(hewn_scene_arguments *scene);
 
 #endif

@@ -101,3 +101,15 @@ hewn_result hewn_volume_arguments_read(const hewn_arguments *arguments, hewn_vol
     out->read.series = hewn_arguments_value(arguments, "series");
     return HEWN_OK;
 }
+
+bool hewn_volume_arguments_wanted(const hewn_arguments *arguments, hewn_volume_format *format)
+{
+    const char *from = hewn_arguments_value(arguments, "from");
+    const char *path = arguments->operand_count > 0 ? arguments->operands[0] : "";
+    *format = HEWN_VOLUME_UNKNOWN;
+    if (from)
+        return hewn_volume_format_find(from, format);
+    if (hewn_volume_format_of_file(path) == HEWN_VOLUME_UNKNOWN && hewn_arguments_has(arguments, "dims"))
+        *format = HEWN_VOLUME_RAW;
+    return *format == HEWN_VOLUME_RAW || hewn_volume_format_of_file(path) != HEWN_VOLUME_UNKNOWN;
+}

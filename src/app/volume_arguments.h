@@ -32,6 +32,10 @@ typedef struct hewn_volume_arguments {
 /* Whether any of the options above is given. */
 bool hewn_volume_arguments_any(const hewn_arguments *arguments);
 
+/* Whether the operand is to be read as a volume, and the format that --from names. Who says what a raw file holds means
+ * one. */
+bool hewn_volume_arguments_wanted(const hewn_arguments *arguments, hewn_volume_format *format);
+
 /* HEWN_INVALID_ARGUMENT. */
 hewn_result hewn_volume_arguments_read(const hewn_arguments *arguments, hewn_volume_arguments *out, hewn_error *error);
 

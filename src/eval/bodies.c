@@ -195,8 +195,9 @@ static value_name write_value(body_writer *writer, uint32_t at)
     uint32_t first = writer->number_count, made = writer->written++;
     for (uint32_t i = 0; i < step->parameter_count; i++)
         writer->numbers[writer->number_count++] = writer->listing->parameters[step->parameter + i];
-    for (int flavour = 0; flavour < (writer->centred ? FORMS : MIDDLE); flavour++)
-        write_call(writer, step, operands, first, made, flavour);
+    for (int flavour = 0; flavour < FORMS; flavour++)
+        if (flavour != (writer->centred ? INTERVAL : MIDDLE))
+            write_call(writer, step, operands, first, made, flavour);
     return name_all("n", made);
 }
 
@@ -250,17 +251,19 @@ static double steepness(double rows[3][4])
     return exp(0.5 * log_scale) * (1 + 1e-6);
 }
 
-/* How steep a shape in a frame is at most, and what its rounding errors grow with: the sum of all factors, by which
- * coordinates come in, and the sum of everything else. */
+/* Of a shape in a turned frame how steep it is at most, and what its rounding errors grow with: the sum of all factors,
+ * by which coordinates come in, and the sum of everything else. False for others. */
 static bool slope_numbers(const hewn_listing *listing, const hewn_code_step *step, float numbers[HEWN_SLOPE_NUMBERS])
 {
     double rows[3][4], factors = 0, rest = 0;
+    bool turned = false;
     if (step->op < HEWN_OP_SPHERE || step->op > HEWN_OP_CONE || !step->sure)
         return false;
     for (int i = 0; i < 3; i++)
         if (!frame_row(listing, &listing->steps[step->in[i]], rows[i]))
             return false;
     for (int i = 0; i < 3; i++) {
+        turned = turned || (rows[i][0] != 0) + (rows[i][1] != 0) + (rows[i][2] != 0) > 1;
         for (int k = 0; k < 3; k++)
             factors += fabs(rows[i][k]);
         rest += fabs(rows[i][3]);
@@ -270,7 +273,7 @@ static bool slope_numbers(const hewn_listing *listing, const hewn_code_step *ste
     numbers[0] = (float)(steepness(rows) * (1 + 1e-6));
     numbers[1] = (float)(factors * (1 + 1e-6));
     numbers[2] = (float)(rest * (1 + 1e-6));
-    return numbers[0] < 1e15f && numbers[1] < 1e15f && numbers[2] < 1e15f;
+    return turned && numbers[0] < 1e15f && numbers[1] < 1e15f && numbers[2] < 1e15f;
 }
 
 uint32_t hewn_body_weight(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step)
@@ -299,8 +302,8 @@ void hewn_body_write(const hewn_listing *listing, const hewn_gathering *gathered
     value_name result = write_value(&writer, step);
     if (centred) {
         uint32_t first = writer.number_count;
-        hewn_text_print(&texts[INTERVAL], "%s=f_about(%s,%s,middle,x,y,z,q%u,q%u,q%u);\n", result.whole[INTERVAL],
-                        result.whole[INTERVAL], result.whole[MIDDLE], first, first + 1, first + 2);
+        hewn_text_print(&texts[INTERVAL], "vec2 %s=f_about(%s,middle,x,y,z,q%u,q%u,q%u);\n", result.whole[INTERVAL],
+                        result.whole[MIDDLE], first, first + 1, first + 2);
         for (uint32_t i = 0; i < HEWN_SLOPE_NUMBERS; i++)
             numbers[writer.number_count++] = slope[i];
     }

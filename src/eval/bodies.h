@@ -24,10 +24,11 @@ hewn_result hewn_bodies_gather(const hewn_listing *listing, hewn_gathering **out
 /* Whether the step can be part of whatever uses it: a variable, a number, or a body that few would want twice. */
 bool hewn_body_absorbable(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step);
 
-/* The body in three flavours (appended), and its numbers. Where it is a shape in an affine frame, intervals are also
- * taken about the middle of the box, from how steep it can be at most: that is the better the more the frame is turned.
- */
 uint32_t hewn_body_weight(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step);
+
+/* The body in three flavours (appended), and its numbers. Of a shape in a turned frame bounds are those about the
+ * middle of the box, from how steep it can be at most: of intervals of turned coordinates no more would come, and at a
+ * multiple of the cost. */
 void hewn_body_write(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step, hewn_text texts[3],
                      float numbers[HEWN_BODY_NUMBERS], uint32_t *number_count);
 

@@ -53,9 +53,14 @@ static hewn_result create_filled(hewn_device *device, uint64_t bytes, const void
     return HEWN_OK;
 }
 
-static size_t instruction_bytes(const hewn_instructions *instructions)
+static size_t number_bytes(const hewn_instructions *instructions)
 {
     return (size_t)instructions->count * instructions->set.words * sizeof(uint32_t);
+}
+
+static size_t entry_bytes(const hewn_instructions *instructions)
+{
+    return (size_t)instructions->count * HEWN_LIST_ENTRY;
 }
 
 /* Invocations that read an instruction together: as many as a subgroup of a CPU device has. GPUs have subgroups that
@@ -70,12 +75,17 @@ static uint32_t invocations_together(const hewn_device *device)
 static hewn_result write_instructions(hewn_device *device, hewn_code *code, hewn_error *error)
 {
     const hewn_instructions *list = &code->instructions;
-    size_t bytes = instruction_bytes(list);
+    size_t numbers = number_bytes(list), entries = entry_bytes(list);
     code->walking = (hewn_walking){.masked = device->info.kind == HEWN_DEVICE_CPU,
                                    .whole = code->walking.whole,
                                    .together = invocations_together(device)};
-    HEWN_TRY(create_filled(device, bytes + HEWN_LIST_SLACK, list->words, bytes, &code->parameters, error));
-    const hewn_list_block block = {.whole = code->parameters.address, .whole_count = list->count};
+    HEWN_TRY(
+        create_filled(device, numbers + entries + HEWN_LIST_SLACK, list->words, numbers, &code->parameters, error));
+    memcpy((char *)code->parameters.mapped + numbers, list->entries, entries);
+    code->entries_at = numbers;
+    const hewn_list_block block = {.numbers = code->parameters.address,
+                                   .whole = code->parameters.address + code->entries_at,
+                                   .whole_count = list->count};
     return create_filled(device, sizeof block, &block, sizeof block, &code->uniforms, error);
 }
 
@@ -163,12 +173,21 @@ static hewn_result choose_blocks(hewn_code *code, hewn_error *error)
  * devices is the sum of all its kinds and of reading it (docs/performance.md). */
 enum { LISTED_FROM = 12, READING = 60, A_SLOT = 6 };
 
+/* More edges of outlines than this are walked over whatever else there is: each is the same code with other numbers, and
+ * written out one by one they take longer to compile than lists take to run. */
+enum { LISTED_EDGES = 64 };
+
 static bool lists_pay(const hewn_code *code)
 {
     const hewn_instruction_set *set = &code->instructions.set;
     uint64_t all = 0, one = READING + (uint64_t)A_SLOT * set->slots;
-    for (size_t i = 0; i < code->listing.count; i++)
+    size_t edges = 0;
+    for (size_t i = 0; i < code->listing.count; i++) {
         all += hewn_listing_weight(&code->listing.steps[i]);
+        edges += code->listing.steps[i].op == HEWN_OP_EDGE;
+    }
+    if (edges > LISTED_EDGES)
+        return true;
     for (uint32_t i = 0; i < set->body_count; i++)
         one += set->bodies[i].weight;
     for (uint32_t i = 0; i < set->combination_count; i++)
@@ -244,7 +263,8 @@ void hewn_code_destroy(hewn_device *device, hewn_code **code)
 /* The texts tell best whether two fields make the same code: nothing else is compiled. */
 static hewn_result same_text(const hewn_listing *a, const hewn_listing *b, bool *same, hewn_error *error)
 {
-    const uint32_t all = HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_ROW;
+    const uint32_t all = HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_ROW |
+                         HEWN_FLAVOUR_NEAR; /* which tells most: what is sure depends on numbers */
     hewn_text texts[2] = {{0}, {0}};
     hewn_listing_write(a, all, &texts[0]);
     hewn_listing_write(b, all, &texts[1]);
@@ -262,7 +282,7 @@ static hewn_result renumber_list(hewn_code *code, hewn_listing *listing, bool *t
 {
     hewn_instructions made;
     hewn_result result = hewn_instructions_create(&made, listing, &code->instructions.set, taken, error);
-    if (*taken && instruction_bytes(&made) + HEWN_LIST_SLACK > code->parameters.size) {
+    if (*taken && number_bytes(&made) > code->entries_at) {
         hewn_instructions_destroy(&made);
         *taken = false;
     }
@@ -270,7 +290,8 @@ static hewn_result renumber_list(hewn_code *code, hewn_listing *listing, bool *t
         hewn_listing_destroy(listing);
         return result;
     }
-    memcpy(code->parameters.mapped, made.words, instruction_bytes(&made));
+    memcpy(code->parameters.mapped, made.words, number_bytes(&made));
+    memcpy((char *)code->parameters.mapped + code->entries_at, made.entries, entry_bytes(&made));
     ((hewn_list_block *)code->uniforms.mapped)->whole_count = made.count;
     hewn_instructions_destroy(&code->instructions);
     hewn_listing_destroy(&code->listing);
@@ -320,9 +341,9 @@ uint32_t hewn_code_instruction_count(const hewn_code *code)
     return code->instructions.count;
 }
 
-uint32_t hewn_code_instruction_bytes(const hewn_code *code)
+const uint32_t *hewn_code_whole_list(const hewn_code *code)
 {
-    return code->instructions.set.words * (uint32_t)sizeof(uint32_t);
+    return code->instructions.entries;
 }
 
 void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_buffer *ranges)
@@ -348,7 +369,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
                                "#extension GL_EXT_control_flow_attributes : require\n"
                                "#extension GL_KHR_shader_subgroup_basic : enable\n"
                                "#extension GL_KHR_shader_subgroup_vote : enable\n"
-                               "#extension GL_KHR_shader_subgroup_ballot : enable\n");
+                               "#extension GL_KHR_shader_subgroup_shuffle : enable\n");
     else if (code->place == HEWN_PLACE_ADDRESS)
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n");
     hewn_text_append(text, desc->head + version);
@@ -357,10 +378,12 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
         hewn_instruction_set_declare(&code->instructions.set, &how, text);
     } else {
         write_parameter_block(code, text);
-        hewn_text_append(text, "const uint FIELD_WHOLE = 0xFFFFFFFFu;\nvoid field_select(uint slot)\n{\n}\n");
+        hewn_text_append(text, "const uint FIELD_WHOLE = 0xFFFFFFFFu;\nvoid field_select(uint slot)\n{\n}\n"
+                               "void field_narrow(vec2 x, vec2 y, vec2 z, bool matters, uint least)\n{\n}\n");
     }
     hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_POINT, text);
-    if (desc->flavours & (HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_CHOICES))
+    bool narrows = how.together && (desc->flavours & (HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_ROW));
+    if (narrows || desc->flavours & (HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_CHOICES))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_INTERVAL, text);
     if (desc->flavours & (HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_FOUR))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_GRADIENT, text);
@@ -369,7 +392,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
         write_body(code, desc->body, text);
         return;
     }
-    if (desc->flavours & HEWN_FLAVOUR_CHOICES)
+    if (narrows || desc->flavours & HEWN_FLAVOUR_CHOICES)
         hewn_text_append(text, hewn_text_keep);
     hewn_instruction_set_write(&code->instructions.set, &how, desc->flavours, text);
     hewn_text_append(text, desc->body);

@@ -20,10 +20,16 @@ typedef enum hewn_flavour {
     HEWN_FLAVOUR_FOUR = 64,    /* in listed code: values and gradients of four points at once */
     HEWN_FLAVOUR_TOGETHER = 128, /* all invocations of a subgroup, none of which has left, evaluate the same list at
                                     the same time */
+    HEWN_FLAVOUR_NEAR =
+        256, /* no coordinate is larger than HEWN_REACH: what is never NaN there is not asked whether it is */
     HEWN_FLAVOUR_ROW = 8 /* uint field_row_inside(uint i, float y, float z): bit k set where field_point(sample_x(i +
                             k), y, z) < 0, k = 0..7. The kernel declares `float sample_x(uint i);` before the field's
                             code and defines it. What does not depend on x is evaluated once a row. */
 } hewn_flavour;
+
+/* Up to here the emitter knows how large values get; farther out intervals are everything. The shader has the same
+ * number. */
+#define HEWN_REACH 0x1p30
 
 /* Where the field's numbers live. In a buffer, another number of the same field needs no compilation. In the code it
  * does, and the first compilation is a little shorter. Values, bounds and gradients have the same bits either way. */

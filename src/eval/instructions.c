@@ -251,7 +251,7 @@ static hewn_result start_set(hewn_instruction_set *set, const hewn_instruction_s
 /* --- words ------------------------------------------------------------------------------------------------------- */
 
 /* Room for the longest instruction; they are brought to the set's length once that is known. */
-enum { WORDS_MOST = (3 + HEWN_BODY_NUMBERS + HEWN_TOGETHER_MOST - 1) / HEWN_TOGETHER_MOST * HEWN_TOGETHER_MOST };
+enum { WORDS_MOST = (2 + HEWN_BODY_NUMBERS + HEWN_TOGETHER_MOST - 1) / HEWN_TOGETHER_MOST * HEWN_TOGETHER_MOST };
 
 static uint32_t float_bits(float value)
 {
@@ -261,7 +261,7 @@ static uint32_t float_bits(float value)
 }
 
 static hewn_result write_one(const assembly *parts, const item *one, hewn_instruction_set *set, bool may_add,
-                             uint32_t words[WORDS_MOST], bool *fits, hewn_error *error)
+                             uint32_t *head, uint32_t words[WORDS_MOST], bool *fits, hewn_error *error)
 {
     hewn_body body = {0};
     float numbers[HEWN_BODY_NUMBERS];
@@ -280,7 +280,7 @@ static hewn_result write_one(const assembly *parts, const item *one, hewn_instru
         body.inputs = parts->gathered[one->body].input_count;
         which = find_body(set, &body, may_add);
         for (uint32_t i = 0; i < count; i++)
-            words[3 + i] = float_bits(numbers[i]);
+            words[2 + i] = float_bits(numbers[i]);
     }
     if (one->combine != HEWN_NO_STEP) {
         const hewn_code_step *step = &parts->listing->steps[one->combine];
@@ -289,12 +289,12 @@ static hewn_result write_one(const assembly *parts, const item *one, hewn_instru
         combine = 1 + find_combination(set, &wanted, may_add);
         set->blends = set->blends || (may_add && step->parameter_count > 0);
         for (uint32_t i = 0; i < step->parameter_count; i++)
-            words[1 + i] = float_bits(parts->listing->parameters[step->parameter + i]);
+            words[i] = float_bits(parts->listing->parameters[step->parameter + i]);
     }
     *fits = *fits && which < HEWN_BODIES_MAX && combine <= HEWN_COMBINATIONS_MAX;
-    words[0] = which | combine << 8 | one->slot << 12;
+    *head = which | combine << 8 | one->slot << 12;
     for (uint32_t k = 0; k < 4; k++)
-        words[0] |= (one->in[k] == NO_ITEM ? (uint32_t)HEWN_NO_SLOT : parts->items[one->in[k]].slot) << (16 + 4 * k);
+        *head |= (one->in[k] == NO_ITEM ? (uint32_t)HEWN_NO_SLOT : parts->items[one->in[k]].slot) << (16 + 4 * k);
     return HEWN_OK;
 }
 
@@ -303,7 +303,7 @@ static uint32_t words_of(const hewn_instruction_set *set)
     uint32_t most = 0;
     for (uint32_t i = 0; i < set->body_count; i++)
         most = set->bodies[i].numbers > most ? set->bodies[i].numbers : most;
-    uint32_t words = 1 + (set->blends ? 2 : 0) + most;
+    uint32_t words = (set->blends ? 2 : 0) + (most > 0 ? most : 1);
     return (words + HEWN_TOGETHER_MOST - 1) / HEWN_TOGETHER_MOST * HEWN_TOGETHER_MOST;
 }
 
@@ -311,23 +311,26 @@ static hewn_result write_words(hewn_instructions *out, const assembly *parts, co
                                bool *fits, hewn_error *error)
 {
     uint32_t *wide = hewn_alloc_zero((size_t)out->count * WORDS_MOST, sizeof *wide);
-    if (!wide)
+    out->words = wide;
+    out->entries = hewn_alloc((size_t)2 * out->count, sizeof *out->entries);
+    if (!wide || !out->entries)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %u instructions", out->count);
     hewn_result result = HEWN_OK;
     for (uint32_t i = 0; result == HEWN_OK && *fits && i < out->count; i++) {
         const item *one = &parts->items[parts->order[i]];
         out->prunable += one->combine != HEWN_NO_STEP;
-        result = write_one(parts, one, &out->set, !known, wide + (size_t)i * WORDS_MOST, fits, error);
+        uint32_t *entry = out->entries + (size_t)2 * i;
+        entry[1] = i;
+        result = write_one(parts, one, &out->set, !known, entry, wide + (size_t)i * WORDS_MOST, fits, error);
     }
     if (!known)
         out->set.words = words_of(&out->set);
-    uint32_t head = out->set.blends ? 3 : 1;
+    uint32_t first = out->set.blends ? 0 : 2;
     for (uint32_t i = 0; result == HEWN_OK && i < out->count; i++) /* towards the front, so in place */
         for (uint32_t k = 0; k < out->set.words; k++) {
-            uint32_t from = k < head ? k : k - head + 3;
+            uint32_t from = k + first;
             wide[(size_t)i * out->set.words + k] = from < WORDS_MOST ? wide[(size_t)i * WORDS_MOST + from] : 0;
         }
-    out->words = wide;
     return result;
 }
 
@@ -378,6 +381,7 @@ void hewn_instructions_destroy(hewn_instructions *instructions)
 {
     for (uint32_t i = 0; i < instructions->set.body_count; i++)
         clear_body(&instructions->set.bodies[i]);
+    hewn_free(instructions->entries);
     hewn_free(instructions->words);
     memset(instructions, 0, sizeof *instructions);
 }

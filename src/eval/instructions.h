@@ -18,7 +18,7 @@ enum {
     HEWN_BODY_INPUTS = 3,         /* slots that a body reads */
     HEWN_BODY_NUMBERS = 21,       /* of one body */
     HEWN_SLOPE_NUMBERS = 3,       /* of these, for shapes in frames */
-    HEWN_INSTRUCTIONS_MAX = 30000 /* an invocation walks over all of them twice; CPU drivers bound its iterations */
+    HEWN_INSTRUCTIONS_MAX = 30000 /* an invocation walks over all of them; CPU drivers bound its iterations */
 };
 
 /* A kind of body: `HEWN_TYPE body_N(x, y, z, b, c, d, q0, ...)` in each flavour. Body 0 copies b. */
@@ -38,20 +38,21 @@ typedef struct hewn_combination {
     uint32_t weight;
 } hewn_combination;
 
-/* An instruction's words: the head (body 8 bits, combination 4, out, a, b, c, d 4 each), two numbers of the blend where
- * the set has any, then the body's numbers. */
+/* A list has an entry of two words for each instruction: its head (body 8 bits, combination 4, out, a, b, c, d 4 each),
+ * and where its numbers stand, which all lists share: two of the blend where the set has any, then the body's. */
 typedef struct hewn_instruction_set {
     hewn_body bodies[HEWN_BODIES_MAX];
     uint32_t body_count;
     hewn_combination combinations[HEWN_COMBINATIONS_MAX];
     uint32_t combination_count;
     bool blends;
-    uint32_t words; /* of an instruction */
+    uint32_t words; /* numbers of an instruction */
     uint32_t slots;
 } hewn_instruction_set;
 
 typedef struct hewn_instructions {
     hewn_instruction_set set;
+    uint32_t *entries; /* of the whole field */
     uint32_t *words;
     uint32_t count;
     uint32_t prunable; /* instructions that combine */

@@ -21,7 +21,7 @@ typedef enum hewn_number_place {
 
 /* The uniforms of listed code, as hewn_instruction_set_declare() has them. */
 typedef struct hewn_list_block {
-    uint64_t whole, lists, ranges;
+    uint64_t numbers, whole, lists, ranges;
     uint32_t whole_count, pad;
 } hewn_list_block;
 
@@ -29,7 +29,9 @@ struct hewn_code {
     hewn_listing listing;
     bool listed;
     hewn_walking walking;
-    hewn_instructions instructions; /* of listed code; `parameters` holds their words */
+    hewn_instructions
+        instructions; /* of listed code; `parameters` holds their words and from `entries_at` on the list */
+    uint64_t entries_at;
     hewn_number_place place;
     hewn_library library;
     hewn_library_choice choice;

@@ -4,17 +4,21 @@
 
 #include "base/error.h"
 
-extern const unsigned char hewn_text_point[], hewn_text_interval[], hewn_text_gradient[];
+extern const unsigned char hewn_text_point[], hewn_text_noise_point[], hewn_text_outline_point[], hewn_text_interval[],
+    hewn_text_noise_interval[], hewn_text_gradient[], hewn_text_noise_gradient[];
 
 static const char marker[] = "\n//: ";
 
-static const char *text_of(hewn_library_text which)
+/* The files that a text is made of, NULL after the last. */
+enum { FILES_MAX = 4 };
+
+static const char *file_of(hewn_library_text which, int file)
 {
-    switch (which) {
-    case HEWN_LIBRARY_POINT: return (const char *)hewn_text_point;
-    case HEWN_LIBRARY_INTERVAL: return (const char *)hewn_text_interval;
-    default: return (const char *)hewn_text_gradient;
-    }
+    static const unsigned char *const files[HEWN_LIBRARY_TEXTS][FILES_MAX] = {
+        [HEWN_LIBRARY_POINT] = {hewn_text_point, hewn_text_noise_point, hewn_text_outline_point},
+        [HEWN_LIBRARY_INTERVAL] = {hewn_text_interval, hewn_text_noise_interval},
+        [HEWN_LIBRARY_GRADIENT] = {hewn_text_gradient, hewn_text_noise_gradient}};
+    return (const char *)files[which][file];
 }
 
 /* The index of a name, HEWN_LIBRARY_NAMES_MAX if it is not there. */
@@ -60,10 +64,12 @@ hewn_result hewn_library_read(hewn_library *out, hewn_error *error)
 {
     memset(out, 0, sizeof *out);
     for (int which = 0; which < HEWN_LIBRARY_TEXTS; which++)
-        for (const char *at = strstr(text_of((hewn_library_text)which), marker); at; at = strstr(at + 1, marker))
-            if (!read_marker(out, at + strlen(marker)))
-                return hewn_fail(error, HEWN_INTERNAL, "the shader library has more than %d blocks",
-                                 HEWN_LIBRARY_NAMES_MAX);
+        for (int file = 0; file_of((hewn_library_text)which, file); file++)
+            for (const char *at = strstr(file_of((hewn_library_text)which, file), marker); at;
+                 at = strstr(at + 1, marker))
+                if (!read_marker(out, at + strlen(marker)))
+                    return hewn_fail(error, HEWN_INTERNAL, "the shader library has more than %d blocks",
+                                     HEWN_LIBRARY_NAMES_MAX);
     return HEWN_OK;
 }
 
@@ -84,10 +90,9 @@ hewn_result hewn_library_choose(const hewn_library *library, const char *name, h
     return HEWN_OK;
 }
 
-void hewn_library_write(const hewn_library *library, hewn_library_choice choice, hewn_library_text which,
-                        hewn_text *text)
+static void write_file(const hewn_library *library, hewn_library_choice choice, const char *file, hewn_text *text)
 {
-    const char *at = strstr(text_of(which), marker);
+    const char *at = strstr(file, marker);
     while (at) {
         const char *name = at + strlen(marker), *end = strstr(name, marker);
         size_t own = find(library, name, strcspn(name, " \n"));
@@ -96,4 +101,11 @@ void hewn_library_write(const hewn_library *library, hewn_library_choice choice,
             hewn_text_append_bytes(text, block, end ? (size_t)(end - block) : strlen(block));
         at = end;
     }
+}
+
+void hewn_library_write(const hewn_library *library, hewn_library_choice choice, hewn_library_text which,
+                        hewn_text *text)
+{
+    for (int file = 0; file_of(which, file); file++)
+        write_file(library, choice, file_of(which, file), text);
 }

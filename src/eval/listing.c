@@ -59,6 +59,16 @@ static void put_cone(hewn_listing *listing, hewn_code_step *step, const double *
     put(listing, step, 0.5 * (p[0] + p[1]));
 }
 
+/* With the reciprocal of the square of the edge's length. */
+static void put_edge(hewn_listing *listing, hewn_code_step *step, const double *p)
+{
+    for (int i = 0; i < 4; i++)
+        put(listing, step, p[i]);
+    double x = (double)rounded(p[2]) - (double)rounded(p[0]), y = (double)rounded(p[3]) - (double)rounded(p[1]);
+    double square = x * x + y * y;
+    put(listing, step, square > 0 ? fmin(1 / square, 1e29) : 0);
+}
+
 static void put_parameters(hewn_listing *listing, hewn_code_step *step, const hewn_node_data *node)
 {
     const double *p = node->parameter;
@@ -73,6 +83,8 @@ static void put_parameters(hewn_listing *listing, hewn_code_step *step, const he
     case HEWN_OP_AFFINE: put_affine(listing, step, p, p[3]); break;
     case HEWN_OP_PLANE: put_affine(listing, step, p, -p[3]); break;
     case HEWN_OP_CONE: put_cone(listing, step, p); break;
+    case HEWN_OP_EDGE: put_edge(listing, step, p); break;
+    case HEWN_OP_ZIGZAG:
     case HEWN_OP_BLEND_QUADRATIC:
     case HEWN_OP_BLEND_CUBIC:
     case HEWN_OP_BLEND_CIRCULAR:
@@ -176,6 +188,13 @@ uint32_t hewn_listing_weight(const hewn_code_step *step)
     case HEWN_OP_CYLINDER: return 22;
     case HEWN_OP_CONE:
     case HEWN_OP_BLEND_EXPONENTIAL: return 70;
+    case HEWN_OP_NOISE_VALUE: return 150;
+    case HEWN_OP_NOISE_GRADIENT:
+    case HEWN_OP_NOISE_SIMPLEX: return 220;
+    case HEWN_OP_NOISE_CELLULAR: return 700;
+    case HEWN_OP_EDGE: return 24;
+    case HEWN_OP_OUTLINE:
+    case HEWN_OP_ZIGZAG: return 6;
     case HEWN_OP_BLEND_QUADRATIC:
     case HEWN_OP_BLEND_CUBIC:
     case HEWN_OP_BLEND_CIRCULAR: return 16;
@@ -254,7 +273,11 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     if (!step->function)
         return;
     bool guard = flavour == INTERVAL && hewn_listing_needs_guard(listing, step);
-    hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", step->function);
+    bool known = flavour != INTERVAL && listing->near && step->sure;
+    const char *function = known && step->op == HEWN_OP_MIN   ? "lesser"
+                           : known && step->op == HEWN_OP_MAX ? "greater"
+                                                              : step->function;
+    hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", function);
     write_operands(listing, step, flavour, false, text);
     for (uint32_t i = 0; i < step->parameter_count; i++) {
         hewn_text_append(text, ",");
@@ -318,17 +341,19 @@ static void write_row(const hewn_listing *listing, hewn_text *text)
 
 void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text)
 {
+    hewn_listing view = *listing;
+    view.near = (flavours & HEWN_FLAVOUR_NEAR) != 0;
     if (flavours & HEWN_FLAVOUR_POINT)
-        write_function(listing, POINT, "float field_point(float x, float y, float z)\n{\n", text);
+        write_function(&view, POINT, "float field_point(float x, float y, float z)\n{\n", text);
     if (flavours & HEWN_FLAVOUR_INTERVAL)
-        write_function(listing, INTERVAL, "vec2 field_interval(vec2 x, vec2 y, vec2 z)\n{\n", text);
+        write_function(&view, INTERVAL, "vec2 field_interval(vec2 x, vec2 y, vec2 z)\n{\n", text);
     if (flavours & HEWN_FLAVOUR_GRADIENT)
-        write_function(listing, GRADIENT,
+        write_function(&view, GRADIENT,
                        "vec4 field_gradient(float at_x, float at_y, float at_z)\n{\n"
                        "vec4 x=vec4(1.0,0.0,0.0,at_x),y=vec4(0.0,1.0,0.0,at_y),z=vec4(0.0,0.0,1.0,at_z);\n",
                        text);
     if (flavours & (HEWN_FLAVOUR_ROW | HEWN_FLAVOUR_WORD))
-        write_row(listing, text);
+        write_row(&view, text);
     if (flavours & HEWN_FLAVOUR_WORD)
         hewn_text_append(text, "uint field_word_inside(uint i, vec4 y, float z)\n{\nuint bits = 0u;\n"
                                "for (uint k = 0u; k < 4u; k++)\n"

@@ -23,15 +23,13 @@ typedef struct hewn_code_step {
     bool sure; /* for such coordinates intervals are finite here and in all that it depends on: no NaN, no overflow */
 } hewn_code_step;
 
-/* Up to here the emitter knows sizes; farther out intervals are everything. The shader has the same number. */
-#define HEWN_REACH 0x1p30
-
 typedef struct hewn_listing {
     hewn_code_step *steps; /* operands first, the root last */
     size_t count;
     float *parameters; /* rounded once; what is below the smallest normal number is 0 */
     size_t parameter_count;
     bool fixed; /* numbers are written into the code */
+    bool near;  /* what is written is for coordinates up to HEWN_REACH: HEWN_FLAVOUR_NEAR */
 } hewn_listing;
 
 /* Fills in size, positive and sure from the operands' (reach.c). */

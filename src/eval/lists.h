@@ -7,14 +7,19 @@
  *
  * Pruning drops an operand of a min, max or blend where bounds show that the arithmetic returns the other operand's
  * bits, so every list gives the same bits in its box as the whole field. With HEWN_FLAVOUR_CHOICES a kernel has
- *   vec2 field_choose(vec2 x, vec2 y, vec2 z, hewn_words choices, uint first)
- *       field_interval(), which also writes two bits an instruction, from word `first` on
+ *   void field_choose(vec2 x[4], vec2 y[4], vec2 z[4], hewn_words choices, uint first[4], out vec2 ranges[4])
+ *       field_interval() of four boxes, which also writes two bits an instruction for each, from word `first` on
  *   uint field_keep(hewn_words choices, uint first, bool write, hewn_words to, uint end)
- *       how many instructions those choices leave; with `write` they are copied to where the list `to` has instructions
- *       up to `end`
- * and with HEWN_FLAVOUR_FOUR
+ *       how many instructions those choices leave; with `write` they go to where the list `to` has instructions up to
+ *       `end`
+ * with HEWN_FLAVOUR_FOUR
  *   vec4 field_points(vec4 x, vec4 y, vec4 z)
  *   void field_gradients(vec4 x, vec4 y, vec4 z, out vec4 gradients[4])
+ * and with that one or HEWN_FLAVOUR_WORD
+ *   void field_narrow(vec2 x, vec2 y, vec2 z, bool matters, uint least)
+ *       all that follows is in such boxes, an invocation one, which matters where `matters` says so: together they may
+ *       leave out of the list what is needed in none, where it has `least` instructions or more. Until the next
+ *       field_select() or field_narrow().
  * `FIELD_TOGETHER` is defined where the kernel is made so that a subgroup reads instructions together: then no
  * invocation may leave before the last evaluation, and what subgroups decide they decide by vote. */
 #ifndef HEWN_SRC_EVAL_LISTS_H
@@ -40,9 +45,12 @@ hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, he
 
 bool hewn_code_is_listed(const hewn_code *code);
 
-/* Instructions of the whole field, and bytes of one. */
+/* Instructions of the whole field, and their list. */
 uint32_t hewn_code_instruction_count(const hewn_code *code);
-uint32_t hewn_code_instruction_bytes(const hewn_code *code);
+const uint32_t *hewn_code_whole_list(const hewn_code *code);
+
+/* Bytes of one in a list: the numbers of all stand in one place. */
+#define HEWN_LIST_ENTRY 8u
 
 /* Kernels made with HEWN_FLAVOUR_TOGETHER give one list to this many invocations in a row, or to a multiple. */
 #define HEWN_LIST_INVOCATIONS 8u

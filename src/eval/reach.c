@@ -108,6 +108,23 @@ static void reach_of_shape(const hewn_listing *listing, hewn_code_step *step, co
     set(step, size, false, in->sure && (!squares || size < most_squared));
 }
 
+/* An outline is as far as its coordinates, and a link's square distance as their squares; past the start of the chain
+ * the links would say nothing. */
+static void reach_of_others(const hewn_listing *listing, hewn_code_step *step, const operands *in)
+{
+    double sum = 0;
+    for (uint32_t i = 1; i < step->in_count; i++)
+        sum += listing->steps[step->in[i]].size;
+    for (uint32_t i = 0; i < step->parameter_count; i++)
+        sum += fabs((double)listing->parameters[step->parameter + i]);
+    switch (step->op) {
+    case HEWN_OP_EDGE: set(step, HEWN_OUTLINE_START, false, in->sure && sum < 0.1 * most_squared); break;
+    case HEWN_OP_OUTLINE: set(step, sqrt(HEWN_OUTLINE_START), false, in->sure && sum < 0.1 * most_squared); break;
+    case HEWN_OP_ZIGZAG: set(step, parameter_of(listing, step), true, in->sure && in->largest < most_squared); break;
+    default: set(step, 1, step->op == HEWN_OP_NOISE_CELLULAR, in->sure); /* noise */
+    }
+}
+
 void hewn_code_step_reach(const hewn_listing *listing, hewn_code_step *step)
 {
     operands in = look_at(listing, step);
@@ -116,6 +133,8 @@ void hewn_code_step_reach(const hewn_listing *listing, hewn_code_step *step)
     } else if (step->op == HEWN_OP_CONSTANT) {
         float value = listing->parameters[step->parameter];
         set(step, isfinite(value) ? fabs((double)value) : most, value >= 0, isfinite(value));
+    } else if (step->op >= HEWN_OP_NOISE_VALUE && step->op <= HEWN_OP_ZIGZAG) {
+        reach_of_others(listing, step, &in);
     } else if (step->op >= HEWN_OP_AFFINE) {
         reach_of_shape(listing, step, &in);
     } else if (step->in_count == 1) {

@@ -5,9 +5,9 @@
 #include "field/internal.h"
 #include "field/interval.h"
 
-static hewn_interval unary(hewn_op op, hewn_interval a)
+static hewn_interval unary(const hewn_node_data *node, hewn_interval a)
 {
-    switch (op) {
+    switch (node->op) {
     case HEWN_OP_NEG: return hewn_interval_neg(a);
     case HEWN_OP_ABS: return hewn_interval_abs(a);
     case HEWN_OP_SQRT: return hewn_interval_sqrt(a);
@@ -24,6 +24,7 @@ static hewn_interval unary(hewn_op op, hewn_interval a)
     case HEWN_OP_CEIL: return hewn_interval_ceil(a);
     case HEWN_OP_ROUND: return hewn_interval_round(a);
     case HEWN_OP_NOT: return hewn_interval_not(a);
+    case HEWN_OP_ZIGZAG: return hewn_interval_zigzag(a, node->parameter[0]);
     default: return hewn_interval_all();
     }
 }
@@ -46,27 +47,30 @@ static hewn_interval binary(const hewn_node_data *node, hewn_interval a, hewn_in
     }
 }
 
+hewn_interval hewn_op_bound(const hewn_node_data *node, const hewn_interval in[3])
+{
+    switch (hewn_op_infos[node->op].operands) {
+    case 0: return hewn_interval_of(node->parameter[0]);
+    case 1: return unary(node, in[0]);
+    case 2: return binary(node, in[0], in[1]);
+    default: return hewn_interval_shape(node, in);
+    }
+}
+
 hewn_interval hewn_tape_bound(const hewn_tape *tape, const hewn_box *bounds, hewn_interval *scratch)
 {
     for (size_t i = 0; i < tape->count; i++) {
         const hewn_step *step = &tape->steps[i];
         const hewn_node_data *node = step->node;
-        switch (hewn_op_infos[node->op].operands) {
-        case 0:
-            if (node->op == HEWN_OP_CONSTANT) {
-                scratch[i] = hewn_interval_of(node->parameter[0]);
-            } else {
-                int axis = (int)(node->op - HEWN_OP_X);
-                scratch[i] = (hewn_interval){bounds->lo[axis], bounds->hi[axis], false};
-            }
-            break;
-        case 1: scratch[i] = unary(node->op, scratch[step->in[0]]); break;
-        case 2: scratch[i] = binary(node, scratch[step->in[0]], scratch[step->in[1]]); break;
-        default: {
-            hewn_interval in[3] = {scratch[step->in[0]], scratch[step->in[1]], scratch[step->in[2]]};
-            scratch[i] = hewn_interval_shape(node, in);
+        if (node->op <= HEWN_OP_Z) {
+            int axis = (int)(node->op - HEWN_OP_X);
+            scratch[i] = (hewn_interval){bounds->lo[axis], bounds->hi[axis], false};
+            continue;
         }
-        }
+        hewn_interval in[HEWN_MAX_OPERANDS] = {{0}};
+        for (int k = 0; k < hewn_op_infos[node->op].operands; k++)
+            in[k] = scratch[step->in[k]];
+        scratch[i] = hewn_op_bound(node, in);
     }
     return scratch[tape->count - 1];
 }

@@ -138,6 +138,39 @@ static dual affine(const double *p, const dual *in, double last)
     return chain(sum.v + last, 1, sum);
 }
 
+static dual noise(const hewn_node_data *node, const dual *in)
+{
+    double out[4];
+    hewn_noise_slopes(node, (const double[3]){in[0].v, in[1].v, in[2].v}, out);
+    dual sum = chain2(out[0], out[1], in[0], out[2], in[1]), last = chain(0, out[3], in[2]);
+    for (int i = 0; i < 3; i++)
+        sum.d[i] += last.d[i];
+    return sum;
+}
+
+/* A link carries the unit direction away from the nearest edge in place of a derivative. */
+static dual edge(const hewn_node_data *node, const dual *in)
+{
+    hewn_side side = hewn_side_of(node->parameter, in[1].v, in[2].v);
+    double v = hewn_op_point(node, (const double[3]){in[0].v, in[1].v, in[2].v});
+    double length = sqrt(side.away[0] * side.away[0] + side.away[1] * side.away[1]);
+    double inverse = length > 0 ? 1 / length : 0;
+    if (side.square < fabs(in[0].v))
+        return chain2(v, side.away[0] * inverse, in[1], side.away[1] * inverse, in[2]);
+    dual kept = in[0];
+    kept.v = v;
+    return kept;
+}
+
+static dual outline(const hewn_node_data *node, const dual *in)
+{
+    dual out = in[0];
+    out.v = hewn_op_point(node, (const double[3]){in[0].v, in[1].v, in[2].v});
+    for (int i = 0; i < 3 && signbit(in[0].v); i++)
+        out.d[i] = -out.d[i];
+    return out;
+}
+
 static dual shape(const hewn_node_data *node, const dual *in)
 {
     const double *p = node->parameter;
@@ -151,6 +184,12 @@ static dual shape(const hewn_node_data *node, const dual *in)
     case HEWN_OP_CAPSULE: return sub(length3(in[0], over(absolute(in[1]), p[1]), in[2]), constant(p[0]));
     case HEWN_OP_CONE: return cone(p, in);
     case HEWN_OP_PLANE: return affine(p, in, -p[3]);
+    case HEWN_OP_NOISE_VALUE:
+    case HEWN_OP_NOISE_GRADIENT:
+    case HEWN_OP_NOISE_SIMPLEX:
+    case HEWN_OP_NOISE_CELLULAR: return noise(node, in);
+    case HEWN_OP_EDGE: return edge(node, in);
+    case HEWN_OP_OUTLINE: return outline(node, in);
     default: return constant((double)NAN);
     }
 }
@@ -198,6 +237,7 @@ static dual unary(const hewn_node_data *node, dual a)
     case HEWN_OP_ACOS: return chain(v, -1 / sqrt((1 - a.v) * (1 + a.v)), a);
     case HEWN_OP_ATAN: return chain(v, 1 / (1 + a.v * a.v), a);
     case HEWN_OP_EXP: return chain(v, v, a);
+    case HEWN_OP_ZIGZAG: return chain(v, remainder(a.v, node->parameter[0]) < 0 ? -1 : 1, a);
     case HEWN_OP_LN: return chain(v, a.v < 0 ? (double)NAN : 1 / a.v, a);
     default: return constant(v); /* steps: flat wherever they have a derivative */
     }

@@ -49,11 +49,26 @@
     op(CAPSULE, capsule, 3, 2)                     /* radius, half height */ \
     op(CONE, cone, 3, 3)                           /* bottom radius, top radius, half height */ \
     op(PLANE, plane, 3, 4)                         /* unit normal, distance */ \
+    op(NOISE_VALUE, noise_value, 3, 1)             /* seed: noise over cells of size 1, from -1 to 1 (noise.c) */ \
+    op(NOISE_GRADIENT, noise_gradient, 3, 1)       /* seed */ \
+    op(NOISE_SIMPLEX, noise_simplex, 3, 1)         /* seed */ \
+    op(NOISE_CELLULAR, noise_cellular, 3, 1)       /* seed; from 0 to 1 */ \
+    op(EDGE, edge, 3, 4)                           /* ax, ay, bx, by: a link of a chain, see below */ \
+    op(OUTLINE, outline, 3, 1)                     /* the largest size of a coordinate in the chain */ \
+    op(ZIGZAG, zigzag, 1, 1)                       /* period: the distance from the nearest of its multiples */ \
     op(BLEND_QUADRATIC, blend_quadratic, 2, 1)     /* size */ \
     op(BLEND_CUBIC, blend_cubic, 2, 1)             /* size */ \
     op(BLEND_CIRCULAR, blend_circular, 2, 1)       /* size: the fillet's radius, and where |a-b| ends */ \
     op(BLEND_EXPONENTIAL, blend_exponential, 2, 1) /* k */
 /* clang-format on */
+
+/* An outline is a chain: an edge for each side of a polygon, from the constant HEWN_OUTLINE_START on, each taking the
+ * one before it, x and y; then the outline, which takes the last edge, x and y. An edge's value is the square of the
+ * distance from the nearest edge so far, below 0 where a ray along x has crossed an odd number of them. That jumps, so
+ * in the other flavours links carry what the outline needs instead: intervals the value in the middle of the box twice,
+ * gradients the direction away from the nearest edge. Only the outline is a field like others; no builder hands out an
+ * edge. */
+#define HEWN_OUTLINE_START 1e29
 
 /* The blends, with d = |a-b|, k the parameter; all are min(a, b) where not d < k, and never give NaN but for NaN:
  *   quadratic    min(a, b) - h² / (4 k),   h = k - d
@@ -72,6 +87,12 @@ typedef struct hewn_op_info {
     uint8_t operands;
     uint8_t parameters;
 } hewn_op_info;
+
+/* Whether the operation means something in a chain only. */
+static inline bool hewn_op_is_link(hewn_op op)
+{
+    return op == HEWN_OP_EDGE || op == HEWN_OP_OUTLINE;
+}
 
 extern const hewn_op_info hewn_op_infos[HEWN_OP_COUNT];
 

@@ -3,6 +3,7 @@
 #define HEWN_SRC_FIELD_INTERNAL_H
 
 #include "field/graph.h"
+#include "field/operate.h"
 
 #define HEWN_NO_ID 0xFFFFFFFFu
 
@@ -32,8 +33,26 @@ bool hewn_node_fold(const hewn_field *field, hewn_node_data *data, uint32_t *exi
 /* The row (a, b, c, d) of a node that is a x + b y + c z + d; false for any other node. */
 bool hewn_node_row(const hewn_field *field, uint32_t id, double row[4]);
 
-/* The value of an operation (none of X, Y, Z) for operand values in double. */
-double hewn_op_point(const hewn_node_data *node, const double in[3]);
+/* Noise, which is the same on every device but for the rounding of its sums: noise.c. */
+double hewn_noise_point(const hewn_node_data *node, const double in[3]);
+
+/* Value, then the derivatives after the three operands. */
+void hewn_noise_slopes(const hewn_node_data *node, const double in[3], double out[4]);
+hewn_interval hewn_noise_interval(const hewn_node_data *node, const hewn_interval in[3]);
+
+static inline bool hewn_op_is_noise(hewn_op op)
+{
+    return op >= HEWN_OP_NOISE_VALUE && op <= HEWN_OP_NOISE_CELLULAR;
+}
+
+/* A side of a polygon against a point: square distance and its direction (not of length 1) away from the side, the side
+ * the point is on, and whether a ray from it along x crosses. */
+typedef struct hewn_side {
+    double square, away[2];
+    bool crossed;
+} hewn_side;
+
+hewn_side hewn_side_of(const double p[4], double x, double y);
 
 /* The nodes under one root, numbered without gaps, so that evaluators need one array and no look-up. */
 typedef struct hewn_step {
@@ -64,5 +83,12 @@ typedef struct hewn_region {
 
 /* A region that contains every point where the last step is below 0, or 0, read off the shapes of the graph alone. */
 hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out, hewn_error *error);
+
+/* The region that the graph alone tells, whose sides may be infinite; false where it tells that the shape is empty, or
+ * nothing for lack of memory. */
+bool hewn_field_known_box(const hewn_field *field, hewn_node node, hewn_box *out);
+
+/* hewn_remap without the edges of outlines that lie on x = 0: what turns about that axis has no surface there. */
+hewn_node hewn_remap_revolved(hewn_field *field, hewn_node shape, hewn_node x, hewn_node y, hewn_node z);
 
 #endif

@@ -29,6 +29,7 @@ hewn_interval hewn_interval_floor(hewn_interval a);
 hewn_interval hewn_interval_ceil(hewn_interval a);
 hewn_interval hewn_interval_round(hewn_interval a);
 hewn_interval hewn_interval_not(hewn_interval a);
+hewn_interval hewn_interval_zigzag(hewn_interval a, double period);
 
 hewn_interval hewn_interval_add(hewn_interval a, hewn_interval b);
 hewn_interval hewn_interval_sub(hewn_interval a, hewn_interval b);

@@ -92,6 +92,46 @@ static hewn_interval affine(const double *p, const hewn_interval *in, double las
     return hewn_interval_add(sum, hewn_interval_of(last));
 }
 
+/* A link holds its value in the middle of the box. */
+static hewn_interval edge(const hewn_node_data *node, const hewn_interval *in)
+{
+    double x = 0.5 * in[1].lo + 0.5 * in[1].hi, y = 0.5 * in[2].lo + 0.5 * in[2].hi;
+    double value = hewn_op_point(node, (const double[3]){in[0].lo, x, y});
+    if (in[0].maybe_nan || in[1].maybe_nan || in[2].maybe_nan || !(fabs(value) < DBL_MAX))
+        return hewn_interval_all();
+    return hewn_interval_of(value);
+}
+
+/* The distance to an outline is 1-Lipschitz: it lies about that in the middle. */
+static hewn_interval outline(const hewn_node_data *node, const hewn_interval *in)
+{
+    if (in[0].maybe_nan || in[1].maybe_nan || in[2].maybe_nan || in[0].lo != in[0].hi)
+        return hewn_interval_all();
+    double value = hewn_op_point(node, (const double[3]){in[0].lo, 0, 0});
+    double x = 0.5 * in[1].hi - 0.5 * in[1].lo, y = 0.5 * in[2].hi - 0.5 * in[2].lo;
+    double far = fmax(fabs(in[1].lo), fabs(in[1].hi)) + fmax(fabs(in[2].lo), fabs(in[2].hi));
+    double reach = sqrt(x * x + y * y), error = 0x1p-44 * (far + node->parameter[0]);
+    if (!(reach < DBL_MAX))
+        return hewn_interval_all();
+    return (hewn_interval){hewn_lower(value - reach, error), hewn_upper(value + reach, error), false};
+}
+
+/* Whole and half turns between the ends are the least and the greatest there is. */
+hewn_interval hewn_interval_zigzag(hewn_interval a, double period)
+{
+    if (isinf(a.lo) || isinf(a.hi) || !(a.hi - a.lo < period))
+        return (hewn_interval){0, 0.5 * period, a.maybe_nan || isinf(a.lo) || isinf(a.hi)};
+    double from = remainder(a.lo, period), to = remainder(a.hi, period);
+    bool rises = from >= 0, ends = to >= 0;
+    hewn_interval out = {fmin(fabs(from), fabs(to)), fmax(fabs(from), fabs(to)), a.maybe_nan};
+    bool wraps = from > to; /* the remainder falls where it passes half a period */
+    if ((from <= 0 && to >= 0 && !wraps) || (wraps && (rises == ends)))
+        out.lo = 0;
+    if (wraps)
+        out.hi = 0.5 * period;
+    return out;
+}
+
 hewn_interval hewn_interval_shape(const hewn_node_data *node, const hewn_interval in[3])
 {
     const double *p = node->parameter;
@@ -105,6 +145,12 @@ hewn_interval hewn_interval_shape(const hewn_node_data *node, const hewn_interva
     case HEWN_OP_CAPSULE: return less(length3(in[0], positive(less(hewn_interval_abs(in[1]), p[1])), in[2]), p[0]);
     case HEWN_OP_CONE: return cone(node, in);
     case HEWN_OP_PLANE: return affine(p, in, -p[3]);
+    case HEWN_OP_NOISE_VALUE:
+    case HEWN_OP_NOISE_GRADIENT:
+    case HEWN_OP_NOISE_SIMPLEX:
+    case HEWN_OP_NOISE_CELLULAR: return hewn_noise_interval(node, in);
+    case HEWN_OP_EDGE: return edge(node, in);
+    case HEWN_OP_OUTLINE: return outline(node, in);
     default: return hewn_interval_all();
     }
 }

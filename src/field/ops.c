@@ -52,6 +52,15 @@ const char *hewn_op_complaint(hewn_op op, const double *p)
                    ? NULL
                    : "its radii must not be below 0, not both 0, and its height must be above 0";
     case HEWN_OP_PLANE: return plane_complaint(p);
+    case HEWN_OP_NOISE_VALUE:
+    case HEWN_OP_NOISE_GRADIENT:
+    case HEWN_OP_NOISE_SIMPLEX:
+    case HEWN_OP_NOISE_CELLULAR:
+        return p[0] >= 0 && p[0] < 0x1p24 && p[0] == floor(p[0]) ? NULL
+                                                                 : "its seed must be a whole number from 0 to 16777215";
+    case HEWN_OP_EDGE: return p[0] != p[2] || p[1] != p[3] ? NULL : "its ends must not be one point";
+    case HEWN_OP_OUTLINE:
+    case HEWN_OP_ZIGZAG:
     case HEWN_OP_BLEND_QUADRATIC:
     case HEWN_OP_BLEND_CUBIC:
     case HEWN_OP_BLEND_CIRCULAR:

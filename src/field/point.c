@@ -74,6 +74,43 @@ static double cone(const double *p, const double *in)
     return least(to_cap, length2(side, greatest(along, 0)));
 }
 
+/* --- outlines ----------------------------------------------------------------------------------------------------- */
+
+hewn_side hewn_side_of(const double p[4], double x, double y)
+{
+    double dx = x - p[0], dy = y - p[1], ex = p[2] - p[0], ey = p[3] - p[1];
+    double t = (dx * ex + dy * ey) / (ex * ex + ey * ey);
+    double cross = ex * dy - ey * dx;
+    bool up = p[1] <= y, next = p[3] <= y;
+    hewn_side out = {.crossed = up != next && (cross > 0) == up};
+    if (t > 0 && t < 1) { /* the side's own normal, which is right on the side too: a point there counts as right of a
+                             side that rises or falls, and as above a level one */
+        double turn = cross > 0 || (cross == 0 && ey == 0 && ex > 0) ? 1 : -1;
+        out.away[0] = -ey * turn;
+        out.away[1] = ex * turn;
+        out.square = cross * cross / (ex * ex + ey * ey);
+    } else {
+        out.away[0] = t >= 1 ? x - p[2] : dx;
+        out.away[1] = t >= 1 ? y - p[3] : dy;
+        out.square = out.away[0] * out.away[0] + out.away[1] * out.away[1];
+    }
+    return out;
+}
+
+static double edge(const double *p, const double *in)
+{
+    hewn_side side = hewn_side_of(p, in[1], in[2]);
+    double least = side.square < fabs(in[0]) || isnan(side.square) ? side.square : fabs(in[0]);
+    return copysign(least, side.crossed ? -in[0] : in[0]);
+}
+
+static double outline(const double *in)
+{
+    return isnan(in[1]) || isnan(in[2]) ? (double)NAN : copysign(sqrt(fabs(in[0])), in[0]);
+}
+
+/* --- all shapes --------------------------------------------------------------------------------------------------- */
+
 static double shape(const hewn_node_data *node, const double *in)
 {
     const double *p = node->parameter;
@@ -86,6 +123,12 @@ static double shape(const hewn_node_data *node, const double *in)
     case HEWN_OP_CAPSULE: return length3(in[0], greatest(fabs(in[1]) - p[1], 0), in[2]) - p[0];
     case HEWN_OP_CONE: return cone(p, in);
     case HEWN_OP_PLANE: return p[0] * in[0] + p[1] * in[1] + p[2] * in[2] - p[3];
+    case HEWN_OP_NOISE_VALUE:
+    case HEWN_OP_NOISE_GRADIENT:
+    case HEWN_OP_NOISE_SIMPLEX:
+    case HEWN_OP_NOISE_CELLULAR: return hewn_noise_point(node, in);
+    case HEWN_OP_EDGE: return edge(p, in);
+    case HEWN_OP_OUTLINE: return outline(in);
     default: return (double)NAN;
     }
 }
@@ -139,6 +182,7 @@ double hewn_op_point(const hewn_node_data *node, const double in[3])
     case HEWN_OP_CEIL: return ceil(a);
     case HEWN_OP_ROUND: return round(a);
     case HEWN_OP_NOT: return a == 0 ? 1 : 0;
+    case HEWN_OP_ZIGZAG: return fabs(remainder(a, p[0]));
     case HEWN_OP_ADD: return a + b;
     case HEWN_OP_SUB: return a - b;
     case HEWN_OP_MUL: return a * b;

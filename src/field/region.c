@@ -27,11 +27,22 @@ typedef enum rule_kind {
     RULE_MEET     /* the points of all of them */
 } rule_kind;
 
+enum { ASKED_MOST = 6 };
+
 typedef struct rule {
     rule_kind kind;
     int count;
-    question ask[2];
+    question ask[ASKED_MOST];
 } rule;
+
+static const rule unknown = {RULE_UNKNOWN, 0, {{0}}};
+
+/* What the rules look at: `everywhere[i]` bounds step i's value over all of space. */
+typedef struct graph_view {
+    const hewn_tape *tape;
+    const hewn_field *field;
+    const hewn_interval *everywhere;
+} graph_view;
 
 static hewn_region everywhere(void)
 {
@@ -70,15 +81,41 @@ static bool constant_of(const hewn_tape *tape, uint32_t step, double *value)
     return node->op == HEWN_OP_CONSTANT && isfinite(*value);
 }
 
-static rule sum_rule(const hewn_tape *tape, const hewn_step *step, bool above, double level)
+static void add_question(rule *out, question asked)
 {
-    double value;
-    bool minus = step->node->op == HEWN_OP_SUB;
-    if (constant_of(tape, step->in[1], &value))
-        return ask_one(ask(step->in[0], above, minus ? level + value : level - value));
-    if (constant_of(tape, step->in[0], &value))
-        return ask_one(minus ? ask(step->in[1], !above, value - level) : ask(step->in[1], above, level - value));
-    return (rule){RULE_UNKNOWN, 0, {{0}}};
+    out->kind = RULE_MEET;
+    out->ask[out->count++] = asked;
+}
+
+/* Of a sum at or below a level each part is below what the least of the rest leaves (and so for above). `factor` is
+ * what each part is multiplied by. */
+static rule parts_rule(const graph_view *view, const hewn_step *step, int count, const double *factor, double last,
+                       bool above, double level)
+{
+    rule out = unknown;
+    for (int i = 0; i < count; i++) {
+        double rest = last;
+        for (int k = 0; k < count; k++) {
+            if (k == i || factor[k] == 0)
+                continue;
+            hewn_interval part = view->everywhere[step->in[k]];
+            rest += factor[k] * (above == (factor[k] > 0) ? part.hi : part.lo);
+        }
+        double asked = (level - rest) / factor[i];
+        if (factor[i] != 0 && isfinite(rest) && isfinite(asked)) {
+            question one = ask(step->in[i], above == (factor[i] > 0), asked);
+            double slack = 0x1p-48 * ((fabs(rest) + fabs(level)) / fabs(factor[i]));
+            one.level += one.above ? -slack : slack;
+            add_question(&out, one);
+        }
+    }
+    return out;
+}
+
+static rule sum_rule(const graph_view *view, const hewn_step *step, bool above, double level)
+{
+    const double factor[2] = {1, step->node->op == HEWN_OP_SUB ? -1 : 1};
+    return parts_rule(view, step, 2, factor, 0, above, level);
 }
 
 static rule product_rule(const hewn_tape *tape, const hewn_step *step, bool above, double level)
@@ -93,15 +130,86 @@ static rule product_rule(const hewn_tape *tape, const hewn_step *step, bool abov
     }
     double asked = divides ? level * value : level / value;
     if (!known || value == 0 || !isfinite(asked))
-        return (rule){RULE_UNKNOWN, 0, {{0}}};
+        return unknown;
     return ask_one(ask(other, value < 0 ? !above : above, asked));
 }
 
-/* How points of the children answer a question about the node. */
-static rule rule_of(const hewn_tape *tape, const hewn_step *step, bool above, double level)
+/* Between two values. */
+static rule within_rule(uint32_t step, double low, double high)
 {
-    rule unknown = {RULE_UNKNOWN, 0, {{0}}};
-    switch (step->node->op) {
+    rule out = unknown;
+    add_question(&out, ask(step, false, high));
+    add_question(&out, ask(step, true, low));
+    return out;
+}
+
+/* Roots lie above 0 and grow with their operands, so do squares of sizes. */
+static rule root_rule(const hewn_step *step, bool above, double level)
+{
+    if (above)
+        return level > 0 ? ask_one(ask(step->in[0], true, level * level)) : unknown;
+    return ask_one(ask(step->in[0], false, level < 0 ? -DBL_MIN : level * level));
+}
+
+static rule square_rule(const hewn_step *step, bool above, double level)
+{
+    double size = level < 0 ? -DBL_MIN : sqrt(level);
+    return above ? unknown : within_rule(step->in[0], -size, size);
+}
+
+/* The box around the corners of a chain of edges. */
+static rule outline_rule(const graph_view *view, const hewn_step *step, double level)
+{
+    double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
+    for (const hewn_node_data *link = &view->field->nodes[step->node->operand[0]]; link->op == HEWN_OP_EDGE;
+         link = &view->field->nodes[link->operand[0]])
+        for (int i = 0; i < 4; i++) {
+            lo[i & 1] = fmin(lo[i & 1], link->parameter[i]);
+            hi[i & 1] = fmax(hi[i & 1], link->parameter[i]);
+        }
+    rule out = unknown;
+    for (int i = 0; i < 2; i++) {
+        add_question(&out, ask(step->in[1 + i], false, hi[i] + level));
+        add_question(&out, ask(step->in[1 + i], true, lo[i] - level));
+    }
+    return out;
+}
+
+static void half_sizes(const hewn_node_data *node, double half[3]);
+
+/* A shape whose coordinates are no affine ones: each of them lies in the shape's box, grown by the level. */
+static rule shape_rule(const graph_view *view, const hewn_step *step, double level)
+{
+    double row[4], half[3];
+    bool plain = true;
+    for (int i = 0; i < 3; i++)
+        plain = plain && hewn_node_row(view->field, step->node->operand[i], row);
+    if (plain)
+        return (rule){RULE_LEAF, 0, {{0}}};
+    rule out = unknown;
+    half_sizes(step->node, half);
+    for (int i = 0; i < 3; i++) {
+        add_question(&out, ask(step->in[i], false, half[i] + level));
+        add_question(&out, ask(step->in[i], true, -half[i] - level));
+    }
+    return out;
+}
+
+static rule affine_rule(const graph_view *view, const hewn_step *step, bool above, double level)
+{
+    double row[4];
+    if (hewn_node_row(view->field, (uint32_t)(step->node - view->field->nodes), row))
+        return (rule){RULE_LEAF, 0, {{0}}};
+    return parts_rule(view, step, 3, step->node->parameter, step->node->parameter[3], above, level);
+}
+
+/* How points of the children answer a question about the node. */
+static rule rule_of(const graph_view *view, const hewn_step *step, bool above, double level)
+{
+    hewn_op op = step->node->op;
+    if (op >= HEWN_OP_SPHERE && op <= HEWN_OP_CONE)
+        return above ? unknown : shape_rule(view, step, level);
+    switch (op) {
     case HEWN_OP_NEG: return ask_one(ask(step->in[0], !above, -level));
     case HEWN_OP_MIN: return ask_both(above ? RULE_MEET : RULE_HULL, step, above, level);
     case HEWN_OP_MAX: return ask_both(above ? RULE_HULL : RULE_MEET, step, above, level);
@@ -112,18 +220,20 @@ static rule rule_of(const hewn_tape *tape, const hewn_step *step, bool above, do
         return above ? ask_both(RULE_MEET, step, true, level)
                      : ask_both(RULE_HULL, step, false, level + hewn_blend_depth(step->node));
     case HEWN_OP_ADD:
-    case HEWN_OP_SUB: return sum_rule(tape, step, above, level);
+    case HEWN_OP_SUB: return sum_rule(view, step, above, level);
     case HEWN_OP_MUL:
-    case HEWN_OP_DIV: return product_rule(tape, step, above, level);
-    case HEWN_OP_ABS:
-        return above ? unknown : (rule){RULE_MEET, 2, {ask(step->in[0], false, level), ask(step->in[0], true, -level)}};
+    case HEWN_OP_DIV: return product_rule(view->tape, step, above, level);
+    case HEWN_OP_ABS: return above ? unknown : within_rule(step->in[0], -level, level);
+    case HEWN_OP_SQRT: return root_rule(step, above, level);
+    case HEWN_OP_SQUARE: return square_rule(step, above, level);
+    case HEWN_OP_OUTLINE: return above ? unknown : outline_rule(view, step, level);
+    case HEWN_OP_AFFINE: return affine_rule(view, step, above, level);
     case HEWN_OP_X:
     case HEWN_OP_Y:
     case HEWN_OP_Z:
     case HEWN_OP_CONSTANT:
-    case HEWN_OP_AFFINE:
     case HEWN_OP_PLANE: return (rule){RULE_LEAF, 0, {{0}}};
-    default: return !above && hewn_op_infos[step->node->op].operands == 3 ? (rule){RULE_LEAF, 0, {{0}}} : unknown;
+    default: return unknown;
     }
 }
 
@@ -269,13 +379,13 @@ static hewn_region combine(rule_kind kind, hewn_region a, hewn_region b)
     return a;
 }
 
-static void pass_questions(const hewn_tape *tape, answers *all, size_t at)
+static void pass_questions(const graph_view *view, answers *all, size_t at)
 {
     for (int above = 0; above < 2; above++) {
         double level = all[at].level[above];
         if (isinf(level))
             continue;
-        rule r = rule_of(tape, &tape->steps[at], above, level);
+        rule r = rule_of(view, &view->tape->steps[at], above, level);
         for (int i = 0; i < r.count; i++) {
             double *asked = &all[r.ask[i].step].level[r.ask[i].above];
             *asked = r.ask[i].above ? fmin(*asked, r.ask[i].level) : fmax(*asked, r.ask[i].level);
@@ -283,18 +393,18 @@ static void pass_questions(const hewn_tape *tape, answers *all, size_t at)
     }
 }
 
-static void answer_questions(const hewn_tape *tape, const hewn_field *field, answers *all, size_t at)
+static void answer_questions(const graph_view *view, answers *all, size_t at)
 {
-    const hewn_step *step = &tape->steps[at];
+    const hewn_step *step = &view->tape->steps[at];
     for (int above = 0; above < 2; above++) {
         double level = all[at].level[above];
         hewn_region *out = &all[at].region[above];
         *out = everywhere();
         if (isinf(level))
             continue;
-        rule r = rule_of(tape, step, above, level);
+        rule r = rule_of(view, step, above, level);
         if (r.kind == RULE_LEAF)
-            *out = leaf(field, step->node, above, level);
+            *out = leaf(view->field, step->node, above, level);
         for (int i = 0; i < r.count; i++) {
             hewn_region child = all[r.ask[i].step].region[r.ask[i].above];
             *out = i == 0 ? child : combine(r.kind, *out, child);
@@ -304,19 +414,39 @@ static void answer_questions(const hewn_tape *tape, const hewn_field *field, ans
 
 hewn_result hewn_tape_region(const hewn_tape *tape, const hewn_field *field, hewn_region *out, hewn_error *error)
 {
+    static const hewn_box space = {{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
     answers *all = hewn_alloc(tape->count, sizeof *all);
-    if (!all)
+    hewn_interval *bounds = hewn_alloc(tape->count, sizeof *bounds);
+    if (!all || !bounds) {
+        hewn_free(all);
+        hewn_free(bounds);
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory finding a box around a field");
+    }
+    hewn_tape_bound(tape, &space, bounds);
+    const graph_view view = {tape, field, bounds};
     for (size_t i = 0; i < tape->count; i++) {
         all[i].level[0] = -INFINITY;
         all[i].level[1] = INFINITY;
     }
     all[tape->count - 1].level[0] = 0;
     for (size_t i = tape->count; i-- > 0;)
-        pass_questions(tape, all, i);
+        pass_questions(&view, all, i);
     for (size_t i = 0; i < tape->count; i++)
-        answer_questions(tape, field, all, i);
+        answer_questions(&view, all, i);
     *out = all[tape->count - 1].region[0];
     hewn_free(all);
+    hewn_free(bounds);
     return HEWN_OK;
+}
+
+bool hewn_field_known_box(const hewn_field *field, hewn_node node, hewn_box *out)
+{
+    hewn_tape tape;
+    hewn_region region = {.empty = true};
+    if (hewn_tape_create(&tape, field, node, NULL) != HEWN_OK)
+        return false;
+    hewn_result result = hewn_tape_region(&tape, field, &region, NULL);
+    hewn_tape_destroy(&tape);
+    *out = region.box;
+    return result == HEWN_OK && !region.empty;
 }

@@ -5,14 +5,26 @@
 #include "base/error.h"
 #include "field/internal.h"
 
+/* An edge along x = 0 of an outline. Turned around that axis it lies inside, and a ray along x from a point beside it
+ * does not cross it. */
+static bool is_on_axis(const hewn_node_data *data)
+{
+    return data->op == HEWN_OP_EDGE && data->operand[1] == HEWN_ID_X && data->parameter[0] == 0 &&
+           data->parameter[2] == 0;
+}
+
 /* One walk over the nodes in order, operands first: linear and without recursion. */
 static hewn_node rebuild(hewn_field *field, hewn_node shape, const uint32_t *ids, size_t count, uint32_t *moved,
-                         const uint32_t variables[3])
+                         const uint32_t variables[3], bool revolved)
 {
     for (size_t i = 0; i < count; i++) {
         hewn_node_data data = field->nodes[ids[i]]; /* a copy: adding may move the nodes */
         if (data.op <= HEWN_OP_Z) {
             moved[ids[i]] = variables[data.op - HEWN_OP_X];
+            continue;
+        }
+        if (revolved && is_on_axis(&data)) {
+            moved[ids[i]] = moved[data.operand[0]];
             continue;
         }
         bool changed = false;
@@ -29,7 +41,7 @@ static hewn_node rebuild(hewn_field *field, hewn_node shape, const uint32_t *ids
     return (hewn_node){moved[shape.id]};
 }
 
-hewn_node hewn_remap(hewn_field *field, hewn_node shape, hewn_node x, hewn_node y, hewn_node z)
+static hewn_node remap(hewn_field *field, hewn_node shape, hewn_node x, hewn_node y, hewn_node z, bool revolved)
 {
     if (!field)
         return HEWN_NODE_NONE;
@@ -45,11 +57,21 @@ hewn_node hewn_remap(hewn_field *field, hewn_node shape, hewn_node x, hewn_node 
     if (result != HEWN_OK)
         return hewn_field_refuse(field, result, "the shape to move: %s", error.message);
     uint32_t *moved = hewn_alloc((size_t)shape.id + 1, sizeof *moved); /* set for live ids only */
-    hewn_node out = moved ? rebuild(field, shape, ids, count, moved, variables)
+    hewn_node out = moved ? rebuild(field, shape, ids, count, moved, variables, revolved)
                           : hewn_field_refuse(field, HEWN_OUT_OF_MEMORY, "out of memory moving a shape");
     hewn_free(moved);
     hewn_free(ids);
     return out;
+}
+
+hewn_node hewn_remap(hewn_field *field, hewn_node shape, hewn_node x, hewn_node y, hewn_node z)
+{
+    return remap(field, shape, x, y, z, false);
+}
+
+hewn_node hewn_remap_revolved(hewn_field *field, hewn_node shape, hewn_node x, hewn_node y, hewn_node z)
+{
+    return remap(field, shape, x, y, z, true);
 }
 
 static hewn_node remap_affine(hewn_field *field, hewn_node shape, const double rows[3][4])

@@ -112,7 +112,7 @@ static void read_limits(hewn_device *device)
     const VkPhysicalDeviceLimits *limits = &all.properties.limits;
     memcpy(device->max_group_count, limits->maxComputeWorkGroupCount, sizeof device->max_group_count);
     device->max_uniform_range = limits->maxUniformBufferRange;
-    const VkSubgroupFeatureFlags wanted = VK_SUBGROUP_FEATURE_VOTE_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
+    const VkSubgroupFeatureFlags wanted = VK_SUBGROUP_FEATURE_VOTE_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
     if ((subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) && (subgroup.supportedOperations & wanted) == wanted)
         device->subgroup_size = subgroup.subgroupSize;
     device->timestamp_seconds = (double)limits->timestampPeriod * 1e-9;

@@ -47,7 +47,7 @@ struct hewn_device {
     double timestamp_seconds;    /* one tick */
     uint32_t max_group_count[3]; /* workgroups of one dispatch */
     uint64_t max_uniform_range;  /* bytes */
-    uint32_t subgroup_size;      /* invocations; 0 where compute shaders cannot vote and broadcast */
+    uint32_t subgroup_size;      /* invocations; 0 where compute shaders cannot vote and shuffle */
     VkPhysicalDeviceMemoryProperties memory;
     hewn_vulkan_device_table vk;
     VkDescriptorSetLayout uniform_layout;

@@ -44,6 +44,7 @@ typedef struct hewn_writing {
     const hewn_unit *unit; /* NULL: nobody knows */
     hewn_axis up;
     bool up_known;
+    const char *space; /* of a patient, "RAS" or "LPS", or glTF's; NULL: none */
     const hewn_progress *progress;
     char *head; /* what a writer's prepare made; freed by the caller of both */
     size_t head_length;

@@ -234,7 +234,8 @@ static hewn_result compose(const hewn_writing *job, const hewn_glb_plan *plan, h
                            .run_count = plan->run_count,
                            .topology = plan->topology,
                            .merge_count = plan->merge_count,
-                           .conversion = hewn_target_changes(&plan->conversion) ? texts[1].bytes : NULL};
+                           .conversion = hewn_target_changes(&plan->conversion) ? texts[1].bytes : NULL,
+                           .space = job->space};
     HEWN_TRY(find_bounds(job, plan, &desc, error));
     return hewn_gltf_compose(&desc, json, error);
 }

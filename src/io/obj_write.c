@@ -303,7 +303,7 @@ static hewn_result make_head(hewn_writing *job, hewn_error *error)
 {
     hewn_text head = {0};
     hewn_text_print(&head, "# Hewn %s\n# ", hewn_version());
-    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL);
+    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL, job->space);
     hewn_text_append(&head, "\n");
     if (!job->doubles)
         hewn_text_print(&head, "o %s\n", job->name);

@@ -104,7 +104,7 @@ static hewn_result prepare(hewn_writing *job, hewn_error *error)
     hewn_text head = {0};
     hewn_text_print(&head, "%s%s%sOFF\n# Hewn %s\n# ", own->uvs ? "ST" : "", own->colors ? "C" : "",
                     own->normals ? "N" : "", hewn_version());
-    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL);
+    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL, job->space);
     hewn_text_print(&head, "\n%llu %llu 0\n", (unsigned long long)job->vertex_count,
                     (unsigned long long)job->face_count);
     job->head = head.bytes;

@@ -291,7 +291,7 @@ static hewn_result prepare(hewn_writing *job, hewn_error *error)
     hewn_text head = {0};
     head_maker maker = {.job = job, .head = &head};
     hewn_text_print(&head, "ply\nformat binary_little_endian 1.0\ncomment Hewn %s\ncomment ", hewn_version());
-    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL);
+    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL, job->space);
     hewn_text_print(&head, "\ncomment object %s\n", job->name);
     print_element(&maker, false);
     print_element(&maker, true);

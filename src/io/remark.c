@@ -5,12 +5,14 @@
 
 #include "io/shim/number.h"
 
-void hewn_remark_print(hewn_text *text, const hewn_unit *unit, const hewn_axis *up)
+void hewn_remark_print(hewn_text *text, const hewn_unit *unit, const hewn_axis *up, const char *space)
 {
     char metres[HEWN_NUMBER_ROOM] = "?";
     if (unit)
         *hewn_number_print_float(metres, (float)hewn_unit_metres(unit)) = '\0';
     hewn_text_print(text, "1 unit = %s m, %s up", metres, up ? hewn_axis_name(*up) : "?");
+    if (space)
+        hewn_text_print(text, ", SPACE=%s", space);
 }
 
 /* The units are far apart, so a length that was rounded still names one. */

@@ -104,7 +104,7 @@ static hewn_result prepare(hewn_writing *job, hewn_error *error)
     char count[4];
     hewn_text head = {0};
     hewn_text_print(&head, "binary STL, Hewn %s, ", hewn_version());
-    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL);
+    hewn_remark_print(&head, job->unit, job->up_known ? &job->up : NULL, job->space);
     while (head.length < HEADER && !head.failed)
         hewn_text_append_bytes(&head, "\0", 1);
     if (!head.failed)

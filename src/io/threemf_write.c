@@ -226,9 +226,14 @@ static hewn_result write_remarks(const hewn_writing *job, xmlTextWriterPtr xml, 
     if (result == HEWN_OK)
         result = write_metadata(xml, "Title", own->name, to);
     hewn_text_clear(&text);
-    if (result == HEWN_OK && hewn_target_changes(&own->conversion)) {
-        hewn_text_append(&text, "Converted: ");
-        hewn_target_print(&own->conversion, &text);
+    bool converted = hewn_target_changes(&own->conversion);
+    if (result == HEWN_OK && (converted || job->space)) {
+        if (job->space)
+            hewn_text_print(&text, "Space: %s%s", job->space, converted ? ". " : "");
+        if (converted) {
+            hewn_text_append(&text, "Converted: ");
+            hewn_target_print(&own->conversion, &text);
+        }
         result = hewn_text_status(&text, to->error);
         if (result == HEWN_OK)
             result = write_metadata(xml, "Description", text.bytes, to);

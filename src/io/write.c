@@ -212,9 +212,10 @@ hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *pa
                         .triangle_count = triangles->triangle_count,
                         .channels = &normals,
                         .channel_count = triangles->normals ? 1 : 0,
-                        .unit = wanted->unit ? wanted->unit : hewn_unit_at(0),
+                        .unit = wanted->unit || wanted->unsure ? wanted->unit : hewn_unit_at(0),
                         .up = wanted->up,
-                        .up_known = true,
+                        .up_known = !wanted->unsure,
+                        .space = wanted->space,
                         .progress = wanted->progress};
     uint32_t *quads = NULL;
     HEWN_TRY(check_size(&job, writer, error));
@@ -255,6 +256,7 @@ hewn_result hewn_model_write(const hewn_model *model, const char *path, const he
                         .unit = model->unit ? model->unit : wanted->unit,
                         .up = model->up_known ? model->up : wanted->up,
                         .up_known = model->up_known || wanted->unit,
+                        .space = wanted->space,
                         .progress = wanted->progress};
     uint32_t *cut = NULL;
     if (writer->triangles && model->first) {

@@ -1,10 +1,12 @@
-/* Culling of a field in lists: each level's interval arithmetic walks the lists of the level above, and makes shorter
- * ones for the blocks it keeps. Counts come home between levels, since only they tell how large the lists are. */
+/* Culling of a field in lists: each level's interval arithmetic walks the lists of the level above, and shorter ones
+ * are made for the blocks it keeps; on CPU devices by the host, since a kernel reads memory there lane by lane. Counts
+ * come home between levels, since only they tell how large the lists are. */
 #include <string.h>
 
 #include "base/error.h"
 #include "eval/lists.h"
 #include "iso/extractor.h"
+#include "iso/host_lists.h"
 #include "shared/lists.h"
 
 typedef struct list_level {
@@ -37,6 +39,8 @@ static hewn_result take_tested(list_run *run, hewn_buffer **scratch, hewn_error 
     uint64_t tested = level->tested;
     HEWN_TRY(take(run, "culling states", 4 * tested, &level->states, error));
     HEWN_TRY(take(run, "culling flags", 4 * tested, &level->flags, error));
+    HEWN_TRY(take(run, "culling lists", 4 * tested, &level->list, error));
+    HEWN_TRY(take(run, "culling origins", 4 * tested, &level->origins, error));
     HEWN_TRY(take(run, "lengths of lists", 4 * (tested + 1), &level->lengths, error));
     HEWN_TRY(take(run, "choices of lists", 4 * level->choice_words, &level->choices, error));
     return take(run, "culling scratch", hewn_scan_scratch_bytes(tested + 1), scratch, error);
@@ -54,10 +58,92 @@ static void record_clip(const list_run *run, hewn_commands *commands)
                                 .tested = level->tested,
                                 .parents = address_of(run->above.list),
                                 .states = level->states->address,
-                                .flags = level->flags->address,
-                                .lengths = level->lengths->address};
+                                .flags = level->flags->address};
     if (run->region)
         hewn_region_record(run->region, run->extractor->clip, &tested, commands);
+}
+
+static void record_choose(const list_run *run, hewn_commands *commands)
+{
+    const list_level *level = &run->level;
+    struct hewn_choose_push push = {.grid = *run->grid,
+                                    .size = level->size,
+                                    .tested = level->tested,
+                                    .parents = address_of(run->above.list),
+                                    .parent_ranges = address_of(run->above.ranges),
+                                    .states = level->states->address,
+                                    .flags = level->flags->address,
+                                    .choices = level->choices->address};
+    if (run->at_top)
+        memcpy(push.dense, run->top, sizeof push.dense);
+    enum { BLOCKS = 4, GROUP = 16 };
+    hewn_commands_dispatch(commands, run->extractor->choose, &push, hewn_code_uniforms(run->extractor->code),
+                           hewn_groups_for(((uint64_t)level->tested + BLOCKS - 1) / BLOCKS, GROUP));
+}
+
+static void record_gather(const list_run *run, hewn_commands *commands)
+{
+    const list_level *level = &run->level;
+    struct hewn_gather_push push = {.tested = level->tested,
+                                    .parents = address_of(run->above.list),
+                                    .states = level->states->address,
+                                    .ranks = level->flags->address,
+                                    .kept = level->list->address,
+                                    .origins = level->origins->address};
+    if (run->at_top)
+        memcpy(push.dense, run->top, sizeof push.dense);
+    hewn_commands_dispatch(commands, run->extractor->gather, &push, NULL, hewn_groups_for(level->tested, 64));
+}
+
+/* Counts the lists' instructions, or with buffers for them writes the lists. */
+static void record_keep(const list_run *run, uint64_t blocks, hewn_commands *commands)
+{
+    const list_level *level = &run->level;
+    const struct hewn_keep_push push = {.dense = run->at_top,
+                                        .write = level->instructions != NULL,
+                                        .kept = run->totals->address,
+                                        .parent_ranges = address_of(run->above.ranges),
+                                        .origins = level->origins->address,
+                                        .places = level->lengths->address,
+                                        .choices = level->choices->address,
+                                        .lists = address_of(level->instructions),
+                                        .ranges = address_of(level->ranges)};
+    hewn_commands_dispatch(commands, run->extractor->keep_lists, &push, hewn_code_uniforms(run->extractor->code),
+                           hewn_groups_for(blocks, 64));
+}
+
+static hewn_host_lists view_on_host(const list_run *run)
+{
+    const list_level *level = &run->level, *above = &run->above;
+    hewn_host_lists view = {.tested = level->tested,
+                            .parent_entries = hewn_code_whole_list(run->extractor->code),
+                            .whole_count = hewn_code_instruction_count(run->extractor->code),
+                            .choices = level->choices->mapped,
+                            .states = level->states->mapped,
+                            .kept = level->list->mapped,
+                            .origins = level->origins->mapped,
+                            .places = level->lengths->mapped};
+    if (run->at_top) {
+        memcpy(view.dense, run->top, sizeof view.dense);
+    } else {
+        view.parents = above->list->mapped;
+        view.parent_entries = above->instructions->mapped;
+        view.parent_ranges = above->ranges->mapped;
+    }
+    return view;
+}
+
+/* Lists the blocks that are kept, and counts their instructions. */
+static void record_count(const list_run *run, const hewn_buffer *scratch, hewn_commands *commands)
+{
+    const list_level *level = &run->level;
+    hewn_scan_record(run->extractor->scan, commands, level->flags->address, level->tested, run->totals->address,
+                     scratch->address);
+    record_gather(run, commands);
+    record_keep(run, level->tested, commands);
+    hewn_scan_record(run->extractor->scan, commands, level->lengths->address, (uint64_t)level->tested + 1,
+                     run->totals->address + 8, scratch->address);
+    hewn_commands_copy(commands, run->totals, 0, run->results, 0, 16);
 }
 
 /* Tests the level's blocks, and learns how many are kept and how many instructions their lists have. */
@@ -66,63 +152,40 @@ static hewn_result choose(list_run *run, uint32_t totals[4], hewn_error *error)
     list_level *level = &run->level;
     hewn_buffer *scratch;
     HEWN_TRY(take_tested(run, &scratch, error));
-    struct hewn_choose_push push = {.grid = *run->grid,
-                                    .size = level->size,
-                                    .tested = level->tested,
-                                    .parents = address_of(run->above.list),
-                                    .parent_ranges = address_of(run->above.ranges),
-                                    .states = level->states->address,
-                                    .flags = level->flags->address,
-                                    .lengths = level->lengths->address,
-                                    .choices = level->choices->address};
-    if (run->at_top)
-        memcpy(push.dense, run->top, sizeof push.dense);
     hewn_commands *commands;
     HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
-    hewn_commands_fill(commands, level->lengths, (uint64_t)4 * level->tested, 4, 0);
-    hewn_commands_dispatch(commands, run->extractor->choose, &push, hewn_code_uniforms(run->extractor->code),
-                           hewn_groups_for(level->tested, 64));
+    hewn_commands_fill(commands, level->lengths, 0, level->lengths->size, 0);
+    record_choose(run, commands);
     record_clip(run, commands);
-    hewn_scan_record(run->extractor->scan, commands, level->flags->address, level->tested, run->totals->address,
-                     scratch->address);
-    hewn_scan_record(run->extractor->scan, commands, level->lengths->address, (uint64_t)level->tested + 1,
-                     run->totals->address + 8, scratch->address);
-    hewn_commands_copy(commands, run->totals, 0, run->results, 0, 16);
+    if (!run->extractor->on_host)
+        record_count(run, scratch, commands);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
-    memcpy(totals, run->results->mapped, 16);
+    if (run->extractor->on_host) {
+        const hewn_host_lists view = view_on_host(run);
+        uint64_t instructions;
+        totals[0] = hewn_host_lists_count(&view, &instructions);
+        totals[2] = (uint32_t)instructions;
+        totals[3] = (uint32_t)(instructions >> 32);
+    } else {
+        memcpy(totals, run->results->mapped, 16);
+    }
     return hewn_scan_check(totals + 2, "instructions of lists", error);
 }
 
 static hewn_result make_lists(list_run *run, uint64_t instructions, hewn_error *error)
 {
     list_level *level = &run->level;
-    uint64_t bytes = hewn_code_instruction_bytes(run->extractor->code) * instructions + HEWN_LIST_SLACK;
-    HEWN_TRY(take(run, "culling lists", (uint64_t)4 * level->kept, &level->list, error));
-    HEWN_TRY(take(run, "culling origins", (uint64_t)4 * level->kept, &level->origins, error));
     HEWN_TRY(take(run, "ranges of lists", (uint64_t)8 * level->kept, &level->ranges, error));
-    HEWN_TRY(take(run, "instructions", bytes, &level->instructions, error));
-    struct hewn_gather_push gather = {.tested = level->tested,
-                                      .parents = address_of(run->above.list),
-                                      .states = level->states->address,
-                                      .ranks = level->flags->address,
-                                      .kept = level->list->address,
-                                      .origins = level->origins->address};
-    if (run->at_top)
-        memcpy(gather.dense, run->top, sizeof gather.dense);
-    struct hewn_keep_push keep = {.count = level->kept,
-                                  .dense = run->at_top,
-                                  .parent_ranges = address_of(run->above.ranges),
-                                  .origins = level->origins->address,
-                                  .places = level->lengths->address,
-                                  .choices = level->choices->address,
-                                  .lists = level->instructions->address,
-                                  .ranges = level->ranges->address};
-    hewn_commands *commands;
-    HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
-    hewn_commands_dispatch(commands, run->extractor->gather, &gather, NULL, hewn_groups_for(level->tested, 64));
-    hewn_commands_dispatch(commands, run->extractor->keep_lists, &keep, hewn_code_uniforms(run->extractor->code),
-                           hewn_groups_for(level->kept, 64));
-    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    HEWN_TRY(take(run, "instructions", HEWN_LIST_ENTRY * instructions + HEWN_LIST_SLACK, &level->instructions, error));
+    if (run->extractor->on_host) {
+        const hewn_host_lists view = view_on_host(run);
+        hewn_host_lists_write(&view, level->kept, level->instructions->mapped, level->ranges->mapped);
+    } else {
+        hewn_commands *commands;
+        HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
+        record_keep(run, level->kept, commands);
+        HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    }
     hewn_code_use_lists(run->extractor->code, level->instructions, level->ranges);
     return HEWN_OK;
 }

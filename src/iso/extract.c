@@ -299,6 +299,7 @@ hewn_result hewn_extraction_begin(hewn_extractor *extractor, const hewn_extract_
                              .begin = hewn_clock_now()};
     *stats = (hewn_extract_stats){.method = run->method};
     HEWN_TRY(hewn_grid_lay(desc, &run->grid, &stats->bounds, error));
+    HEWN_TRY(hewn_extractor_reach(extractor, &run->grid, error));
     HEWN_TRY(prepare(extractor, desc, run->method, error));
     for (int axis = 0; axis < 3; axis++)
         stats->cells[axis] = run->grid.cells[axis] - 2 * run->grid.rim;

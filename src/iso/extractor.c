@@ -1,9 +1,11 @@
 #include "iso/extractor.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "gpu/device.h"
 #include "iso/fixed_kernel.h"
 #include "iso/marching_cubes.h"
 #include "shared/lists.h"
@@ -52,14 +54,47 @@ static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *
           sizeof(struct hewn_listed_vertex_push)},
          &extractor->vertices,
          LISTED},
-        {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_suspect_push)},
+        {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_TOGETHER,
+          sizeof(struct hewn_suspect_push)},
          &extractor->suspects.find,
          STRAIGHT | LISTED},
     };
-    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++)
+    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
+        hewn_kernel_desc desc = kernels[i].desc;
+        desc.flavours |= hewn_extractor_flavour(extractor);
         if (kernels[i].made_for & wanted)
-            HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &kernels[i].desc, kernels[i].place, error));
+            HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &desc, kernels[i].place, error));
+    }
     return HEWN_OK;
+}
+
+static void clear_field_programs(hewn_extractor *extractor)
+{
+    hewn_program **programs[] = {&extractor->cull,   &extractor->signs,      &extractor->vertices,
+                                 &extractor->choose, &extractor->keep_lists, &extractor->suspects.find};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        hewn_program_destroy(extractor->device, programs[i]);
+    hewn_mc33_clear(extractor);
+    hewn_dual_clear(extractor);
+}
+
+uint32_t hewn_extractor_flavour(const hewn_extractor *extractor)
+{
+    return extractor->far ? 0 : HEWN_FLAVOUR_NEAR;
+}
+
+hewn_result hewn_extractor_reach(hewn_extractor *extractor, const struct hewn_grid *grid, hewn_error *error)
+{
+    double most = 0;
+    for (int axis = 0; axis < 3; axis++)
+        most = fmax(most, fmax(fabs((double)grid->origin[axis]), fabs((double)grid->far[axis])));
+    bool far = extractor->far || most > HEWN_REACH;
+    bool there = extractor->suspects.find; /* the last one: all were made */
+    if (far == extractor->far && there)
+        return HEWN_OK;
+    extractor->far = far;
+    clear_field_programs(extractor);
+    return create_field_programs(extractor, error);
 }
 
 static hewn_result create_fixed_programs(hewn_extractor *extractor, hewn_error *error)
@@ -106,6 +141,7 @@ hewn_result hewn_extractor_create_as(hewn_device *device, const hewn_field *fiel
     if (!extractor)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an extractor");
     extractor->device = device;
+    extractor->on_host = device->info.kind == HEWN_DEVICE_CPU;
     hewn_result result = create_parts(extractor, field, root, desc, error);
     if (result != HEWN_OK) {
         hewn_extractor_destroy(&extractor);
@@ -139,15 +175,12 @@ void hewn_extractor_destroy(hewn_extractor **extractor_place)
     if (!extractor)
         return;
     hewn_device *device = extractor->device;
-    hewn_program **programs[] = {&extractor->cull,          &extractor->signs,           &extractor->vertices,
-                                 &extractor->clip,          &extractor->compact,         &extractor->link,
-                                 &extractor->classify,      &extractor->spread,          &extractor->triangles,
-                                 &extractor->choose,        &extractor->keep_lists,      &extractor->gather,
-                                 &extractor->suspects.cuts, &extractor->suspects.remote, &extractor->suspects.find};
+    hewn_program **programs[] = {&extractor->clip,     &extractor->compact,       &extractor->link,
+                                 &extractor->classify, &extractor->spread,        &extractor->triangles,
+                                 &extractor->gather,   &extractor->suspects.cuts, &extractor->suspects.remote};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         hewn_program_destroy(device, programs[i]);
-    hewn_mc33_clear(extractor);
-    hewn_dual_clear(extractor);
+    clear_field_programs(extractor);
     hewn_buffer_destroy(device, &extractor->table);
     hewn_scan_destroy(device, &extractor->scan);
     hewn_code_destroy(device, &extractor->code);

@@ -31,7 +31,10 @@ struct hewn_extractor {
     hewn_device *device;
     hewn_code *code;
     hewn_scan *scan;
-    hewn_buffer table;                                            /* hewn_mc_table */
+    bool far;          /* kernels take coordinates beyond HEWN_REACH too, see hewn_extractor_reach() */
+    bool on_host;      /* the device is a CPU: stages that need no field are the host's, see iso/host_surface.h,
+                          iso/host_lists.h */
+    hewn_buffer table; /* hewn_mc_table */
     hewn_program *cull, *signs, *vertices;                        /* made of the field */
     hewn_program *choose, *keep_lists, *gather;                   /* instead of `cull` where it is in lists */
     hewn_program *clip;                                           /* for parts of a grid */
@@ -48,6 +51,12 @@ hewn_result hewn_extractor_create_with(hewn_device *device, const hewn_field *fi
 /* As hewn_extractor_create(), with a say in how the field is evaluated. */
 hewn_result hewn_extractor_create_as(hewn_device *device, const hewn_field *field, hewn_node root,
                                      const hewn_code_desc *desc, hewn_extractor **out, hewn_error *error);
+
+/* What kernels of the field add to their flavours. */
+uint32_t hewn_extractor_flavour(const hewn_extractor *extractor);
+
+/* Makes the field's kernels again for the first grid that lies farther out than those are for. */
+hewn_result hewn_extractor_reach(hewn_extractor *extractor, const struct hewn_grid *grid, hewn_error *error);
 
 /* Buffers that one run needs, all freed together. */
 #define HEWN_WORKSPACE_MOST 96

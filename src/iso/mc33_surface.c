@@ -45,10 +45,11 @@ static hewn_result create_all(hewn_extractor *extractor, hewn_error *error)
 {
     HEWN_TRY(create_table(extractor, error));
     HEWN_TRY(create_fixed(extractor, error));
-    hewn_kernel_desc decide = {"mc33_decide", hewn_text_iso_head, hewn_text_mc33_decide, HEWN_FLAVOUR_POINT,
+    const uint32_t near = hewn_extractor_flavour(extractor);
+    hewn_kernel_desc decide = {"mc33_decide", hewn_text_iso_head, hewn_text_mc33_decide, HEWN_FLAVOUR_POINT | near,
                                sizeof(struct hewn_mc33_decide_push)};
-    hewn_kernel_desc centres = {"mc33_centres", hewn_text_iso_head, hewn_text_mc33_centres, HEWN_FLAVOUR_GRADIENT,
-                                sizeof(struct hewn_mc33_centre_push)};
+    hewn_kernel_desc centres = {"mc33_centres", hewn_text_iso_head, hewn_text_mc33_centres,
+                                HEWN_FLAVOUR_GRADIENT | near, sizeof(struct hewn_mc33_centre_push)};
     HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &decide, &extractor->mc33.decide, error));
     return hewn_code_program(extractor->device, extractor->code, &centres, &extractor->mc33.centres, error);
 }

@@ -55,11 +55,9 @@ void hewn_region_record(const hewn_region *region, hewn_program *clip, const hew
                                   .below = region->levels - 1 - level->level,
                                   .begin = region->begin,
                                   .end = region->end,
-                                  .listed = level->lengths != 0,
                                   .parents = level->parents,
                                   .states = level->states,
-                                  .flags = level->flags,
-                                  .lengths = level->lengths};
+                                  .flags = level->flags};
     memcpy(push.top, region->top, sizeof push.top);
     if (level->level == 0)
         memcpy(push.dense, region->top, sizeof push.dense);

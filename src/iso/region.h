@@ -31,7 +31,6 @@ typedef struct hewn_region_level {
     uint32_t tested;
     uint64_t parents; /* addresses, as in hewn_clip_push */
     uint64_t states, flags;
-    uint64_t lengths; /* 0: there are none */
 } hewn_region_level;
 
 /* Takes the blocks back that a part does not need. */

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "eval/lists.h"
 #include "iso/extractor.h"
+#include "iso/host_surface.h"
 #include "shared/lists.h"
 
 static hewn_result take_surface(const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
@@ -66,16 +67,45 @@ static void record_classify(const hewn_extractor *extractor, const struct hewn_g
     hewn_commands_dispatch(commands, extractor->classify, &push, &extractor->table, hewn_groups_for(bricks->count, 32));
 }
 
+static hewn_host_surface view_on_host(const struct hewn_grid *grid, const hewn_bricks *bricks,
+                                      const hewn_surface *surface)
+{
+    hewn_host_surface view = {.count = bricks->count,
+                              .bricks = bricks->list->mapped,
+                              .links = surface->links->mapped,
+                              .signs = surface->signs->mapped,
+                              .edges = surface->edges->mapped,
+                              .vertex_bases = surface->vertex_bases->mapped,
+                              .triangle_bases = surface->triangle_bases->mapped};
+    memcpy(view.cells, grid->cells, sizeof view.cells);
+    return view;
+}
+
+/* Counts on the device, as part of the commands that made the signs. */
+static hewn_result count_on_device(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                   const hewn_bricks *bricks, const hewn_surface *surface, hewn_workspace *workspace,
+                                   hewn_commands *commands, hewn_buffer **results, hewn_error *error)
+{
+    hewn_buffer *totals, *scratch;
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_DEVICE, &totals, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_READBACK, results, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "scratch of sums", hewn_scan_scratch_bytes(bricks->count),
+                                 HEWN_BUFFER_DEVICE, &scratch, error));
+    record_classify(extractor, grid, bricks, surface, commands);
+    hewn_scan_record(extractor->scan, commands, surface->vertex_bases->address, bricks->count, totals->address,
+                     scratch->address);
+    hewn_scan_record(extractor->scan, commands, surface->triangle_bases->address, bricks->count, totals->address + 8,
+                     scratch->address);
+    hewn_commands_copy(commands, totals, 0, *results, 0, 16);
+    return HEWN_OK;
+}
+
 hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct hewn_grid *grid,
                                   const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
                                   hewn_error *error)
 {
-    hewn_buffer *totals, *results, *scratch;
+    hewn_buffer *results = NULL;
     HEWN_TRY(take_surface(bricks, workspace, out, error));
-    HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_DEVICE, &totals, error));
-    HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_READBACK, &results, error));
-    HEWN_TRY(hewn_workspace_take(workspace, "scratch of sums", hewn_scan_scratch_bytes(bricks->count),
-                                 HEWN_BUFFER_DEVICE, &scratch, error));
     hewn_commands *commands;
     double times[2] = {0};
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
@@ -83,14 +113,21 @@ hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct 
     hewn_surface_record_signs(extractor, grid, bricks, out, commands);
     hewn_commands_mark(commands);
     hewn_surface_record_links(extractor, bricks, out, commands);
-    record_classify(extractor, grid, bricks, out, commands);
-    hewn_scan_record(extractor->scan, commands, out->vertex_bases->address, bricks->count, totals->address,
-                     scratch->address);
-    hewn_scan_record(extractor->scan, commands, out->triangle_bases->address, bricks->count, totals->address + 8,
-                     scratch->address);
-    hewn_commands_copy(commands, totals, 0, results, 0, 16);
+    hewn_result result = HEWN_OK;
+    if (!extractor->on_host)
+        result = count_on_device(extractor, grid, bricks, out, workspace, commands, &results, error);
+    if (result != HEWN_OK) {
+        hewn_commands_destroy(&commands);
+        return result;
+    }
     HEWN_TRY(hewn_commands_submit(&commands, times, error));
-    const uint32_t *total = results->mapped;
+    uint32_t total[4]; /* vertices and triangles, each in two words */
+    if (extractor->on_host) {
+        const hewn_host_surface view = view_on_host(grid, bricks, out);
+        hewn_host_surface_count(&view, total);
+    } else {
+        memcpy(total, results->mapped, sizeof total);
+    }
     HEWN_TRY(hewn_scan_check(total, "vertices", error));
     HEWN_TRY(hewn_scan_check(total + 2, "triangles", error));
     out->sign_seconds = times[1];
@@ -146,17 +183,69 @@ void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_gr
                                                .normals = crossings->normals->address,
                                                .summary = crossings->summary};
         hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms,
-                               hewn_groups_for((uint64_t)bricks->count * 16, 64));
+                               hewn_groups_for((uint64_t)bricks->count * 8, 64));
         return;
     }
     struct hewn_vertex_push push = {.grid = *grid,
                                     .count = (uint32_t)count,
                                     .dual = crossings->dual,
-                                    .bricks = bricks->list->address,
                                     .positions = crossings->positions->address + 12 * crossings->first,
                                     .normals = crossings->normals->address + 12 * crossings->first,
                                     .summary = crossings->summary};
-    hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms, hewn_groups_for(count, 64));
+    hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms,
+                           hewn_groups_for(count, 64 * HEWN_VERTICES_EACH));
+}
+
+/* Vertices on edges, and those in cells of the trilinear interpolant's topology, which are means of those around, also
+ * of later bricks. */
+static void record_vertices(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                            const hewn_surface *surface, const hewn_buffer buffers[3], const hewn_buffer *summary,
+                            hewn_commands *commands)
+{
+    const hewn_own own = hewn_surface_own(surface);
+    hewn_crossings crossings = {.first = own.crossings[0],
+                                .end = own.crossings[1],
+                                .bases = own.bases[0],
+                                .positions = &buffers[0],
+                                .normals = &buffers[1],
+                                .summary = summary->address};
+    hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
+    if (own.centres[1] > own.centres[0]) {
+        crossings.first = own.crossings[1];
+        crossings.end = surface->crossing_count;
+        crossings.bases = own.bases[1];
+        crossings.summary += (uint64_t)4 * HEWN_SUMMARY_WORDS;
+        hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
+    }
+    hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
+}
+
+static void record_triangles(const hewn_extractor *extractor, const hewn_surface *surface, const hewn_buffer *indices,
+                             hewn_commands *commands)
+{
+    const hewn_own own = hewn_surface_own(surface);
+    uint64_t count = own.triangles[1] - own.triangles[0];
+    struct hewn_triangle_push triangles = {.count = (uint32_t)count,
+                                           .links = surface->links->address,
+                                           .edges = surface->edges->address,
+                                           .indices = indices->address + 12 * own.triangles[0]};
+    bool refined = surface->asked;
+    if (count > 0)
+        hewn_commands_dispatch(commands, refined ? extractor->mc33.triangles : extractor->triangles, &triangles,
+                               refined ? NULL : &extractor->table, hewn_groups_for(count, 64));
+}
+
+/* Records of vertices, and what triangles there are to emit, before any command runs. */
+static void emit_on_host(const struct hewn_grid *grid, const hewn_bricks *bricks, const hewn_surface *surface,
+                         const hewn_buffer buffers[3])
+{
+    hewn_host_surface view = view_on_host(grid, bricks, surface);
+    const hewn_own own = hewn_surface_own(surface);
+    view.vertices = buffers[0].mapped;
+    view.indices = buffers[2].mapped;
+    hewn_host_surface_spread(&view);
+    uint32_t first = own.part ? (uint32_t)own.bricks[0] : 0, end = own.part ? (uint32_t)own.bricks[1] : bricks->count;
+    hewn_host_surface_triangulate(&view, first, end, surface->triangle_count);
 }
 
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
@@ -170,34 +259,16 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
     hewn_commands *commands;
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, summary, 0, summary->size, 0);
-    bool refined = surface->asked;
-    if (refined)
+    bool refined = surface->asked, on_host = extractor->on_host && !refined;
+    if (on_host)
+        emit_on_host(grid, bricks, surface, buffers);
+    else if (refined)
         hewn_mc33_record_spread(extractor, grid, bricks, surface, buffers, commands);
     else
         record_spread(extractor, grid, bricks, surface, buffers, commands);
-    hewn_own own = hewn_surface_own(surface);
-    hewn_crossings crossings = {.first = own.crossings[0],
-                                .end = own.crossings[1],
-                                .bases = own.bases[0],
-                                .positions = &buffers[0],
-                                .normals = &buffers[1],
-                                .summary = summary->address};
-    hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
-    if (own.centres[1] > own.centres[0]) { /* vertices in cells are means of those around, also of later bricks */
-        crossings.first = own.crossings[1];
-        crossings.end = surface->crossing_count;
-        crossings.bases = own.bases[1];
-        crossings.summary += (uint64_t)4 * HEWN_SUMMARY_WORDS;
-        hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
-    }
-    hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
-    uint64_t count = own.triangles[1] - own.triangles[0];
-    struct hewn_triangle_push triangles = {.count = (uint32_t)count,
-                                           .links = surface->links->address,
-                                           .edges = surface->edges->address,
-                                           .indices = buffers[2].address + 12 * own.triangles[0]};
-    hewn_commands_dispatch(commands, refined ? extractor->mc33.triangles : extractor->triangles, &triangles,
-                           refined ? NULL : &extractor->table, hewn_groups_for(count, 64));
+    record_vertices(extractor, grid, bricks, surface, buffers, summary, commands);
+    if (!on_host)
+        record_triangles(extractor, surface, &buffers[2], commands);
     hewn_commands_copy(commands, summary, 0, results, 0, summary->size);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
     const uint32_t *words = results->mapped;

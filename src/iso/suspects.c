@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 #include "iso/extractor.h"
+#include "iso/host_remote.h"
+#include "iso/host_surface.h"
 
 /* A search and its buffers. */
 typedef struct search {
@@ -63,6 +65,29 @@ static void record_remote(const search *run, hewn_commands *commands)
         hewn_commands_fill(commands, run->remote, 0, 8 * own->bricks[0], 0);
     if (own->part && own->bricks[1] < run->bricks->count)
         hewn_commands_fill(commands, run->remote, 8 * own->bricks[1], 8 * (run->bricks->count - own->bricks[1]), 0);
+}
+
+/* Both on the host, before any command runs. */
+static void find_remote_on_host(const search *run)
+{
+    hewn_host_surface surface = {.count = run->bricks->count,
+                                 .bricks = run->bricks->list->mapped,
+                                 .links = run->surface->links->mapped,
+                                 .signs = run->surface->signs->mapped};
+    memcpy(surface.cells, run->grid->cells, sizeof surface.cells);
+    hewn_host_surface_cut(&surface, run->cuts->mapped);
+    hewn_host_remote view = {.levels = run->bricks->levels,
+                             .count = run->bricks->count,
+                             .bricks = surface.bricks,
+                             .cuts = run->cuts->mapped};
+    memcpy(view.top, run->bricks->top, sizeof view.top);
+    for (uint32_t i = 0; i < run->bricks->levels; i++)
+        view.states[i] = run->bricks->states[i]->mapped;
+    hewn_host_remote_find(&view, run->remote->mapped);
+    const hewn_own *own = &run->surface->own;
+    for (uint32_t i = 0; i < run->bricks->count && own->part; i++) /* others' bricks are not asked */
+        if (i < own->bricks[0] || i >= own->bricks[1])
+            memset((uint32_t *)run->remote->mapped + (uint64_t)2 * i, 0, 8);
 }
 
 static void record_find(const search *run, hewn_commands *commands)
@@ -137,8 +162,12 @@ hewn_result hewn_suspects_find(const hewn_extractor *extractor, const struct hew
     HEWN_TRY(take_buffers(&run, workspace, error));
     hewn_commands *commands;
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
-    record_cuts(&run, commands);
-    record_remote(&run, commands);
+    if (extractor->on_host) {
+        find_remote_on_host(&run);
+    } else {
+        record_cuts(&run, commands);
+        record_remote(&run, commands);
+    }
     record_find(&run, commands);
     hewn_commands_copy(commands, run.counts, 0, run.results, 0, run.results->size);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));

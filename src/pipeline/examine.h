@@ -3,6 +3,7 @@
 #define HEWN_SRC_PIPELINE_EXAMINE_H
 
 #include "hewn/check.h"
+#include "hewn/distance.h"
 #include "hewn/io.h"
 #include "hewn/job.h"
 
@@ -12,12 +13,15 @@ typedef struct hewn_examination {
     hewn_mesh_format format; /* HEWN_MESH_UNKNOWN: from the path; known afterwards */
     uint32_t required;       /* bits of hewn_requirement, for the JSON */
     bool skip_self_intersections;
-    double began; /* CLOCK_MONOTONIC seconds */
+    const char *against;             /* a second file, to measure the distance to; NULL: none */
+    hewn_mesh_format against_format; /* HEWN_MESH_UNKNOWN: from the path; known afterwards */
+    double began;                    /* CLOCK_MONOTONIC seconds */
     const hewn_progress *progress;
 
     hewn_model model;
     hewn_check *check;
-    hewn_report_stage stages[2]; /* load, check */
+    hewn_distance distance;      /* where there is something to measure against, in the unit of the first */
+    hewn_report_stage stages[3]; /* load, check, measure */
 } hewn_examination;
 
 /* HEWN_INVALID_ARGUMENT for an unknown format; HEWN_BAD_INPUT for a file that cannot be read or used; HEWN_LIMIT,

@@ -148,6 +148,22 @@ static hewn_result subdivide(file_job *job, hewn_error *error)
     return HEWN_OK;
 }
 
+static hewn_result simplify(file_job *job, hewn_error *error)
+{
+    hewn_file_report *report = job->report;
+    hewn_simplify_desc desc = *job->desc->simplify;
+    desc.labels = NULL;
+    desc.frozen = NULL;
+    desc.progress = job->desc->progress;
+    begin_stage(job);
+    hewn_result result = hewn_model_simplify(&job->model, &desc, &report->simplify, error);
+    if (result != HEWN_OK)
+        return hewn_blame_input(result, job->desc->input, error);
+    report->simplified = true;
+    end_stage(job, "simplify");
+    return HEWN_OK;
+}
+
 static hewn_result smooth(file_job *job, hewn_error *error)
 {
     hewn_file_report *report = job->report;
@@ -225,6 +241,8 @@ static hewn_result run(file_job *job, hewn_error *error)
         HEWN_TRY(repair(job, error));
     if (desc->subdivide)
         HEWN_TRY(subdivide(job, error));
+    if (desc->simplify)
+        HEWN_TRY(simplify(job, error));
     if (desc->smooth)
         HEWN_TRY(smooth(job, error));
     HEWN_TRY(convert(job, error));

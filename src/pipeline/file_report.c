@@ -5,6 +5,7 @@
 #include "pipeline/json_parts.h"
 #include "pipeline/losses.h"
 #include "pipeline/repair_counts.h"
+#include "pipeline/simplify_step.h"
 #include "pipeline/smooth_step.h"
 #include "pipeline/subdivide_step.h"
 
@@ -101,6 +102,8 @@ hewn_result hewn_file_report_write(const hewn_file_report *report, const char *p
         print_repair(&json, &report->repair);
     if (report->subdivided)
         hewn_subdivide_json(&json, report->scheme, &report->subdivide);
+    if (report->simplified)
+        hewn_simplify_json(&json, &report->simplify);
     if (report->smoothed)
         hewn_smooth_json(&json, report->smooth_method, &report->smooth);
     if (report->check)

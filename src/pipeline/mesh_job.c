@@ -51,6 +51,11 @@ static hewn_result check_faces(const mesh_job *job, hewn_error *error)
     if (desc->adaptive > 0 && (!method || strcmp(method, hewn_method_name(HEWN_METHOD_DC)) != 0))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "only the triangles of dc can be merged, not those of %s",
                          method);
+    if (desc->simplify && desc->max_memory > 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "simplification needs the whole mesh in memory, so it excludes a limit of memory");
+    if (desc->simplify && desc->quads)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "simplified faces are triangles, not quads");
     if (desc->quads && !hewn_method_is_dual(desc->method))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the method %s makes triangles; nets and dc make quads", method);
     if (desc->quads && !hewn_mesh_format_has_polygons(job->format))
@@ -170,6 +175,20 @@ static hewn_result extract(mesh_job *job, const hewn_box *bounds, hewn_error *er
     return HEWN_OK;
 }
 
+static hewn_result simplify(mesh_job *job, hewn_error *error)
+{
+    hewn_simplify_desc desc = *job->desc->simplify;
+    double begin = seconds_since(job->began);
+    desc.labels = NULL;
+    desc.frozen = NULL;
+    desc.progress = job->desc->progress;
+    HEWN_TRY(hewn_triangles_simplify(&job->triangles, &desc, &job->report->simplify, error));
+    job->report->simplified = true;
+    job->report->extraction.max_residual = NAN; /* was that of the cells' vertices */
+    hewn_report_add_stage(job->report, "simplify", begin, seconds_since(job->began));
+    return HEWN_OK;
+}
+
 /* What was promised of the mesh has to hold before anybody gets to see it. */
 static hewn_result certify(mesh_job *job, hewn_error *error)
 {
@@ -236,6 +255,8 @@ static hewn_result run(mesh_job *job, hewn_error *error)
     result = extract(job, &bounds, error);
     if (result != HEWN_OK)
         return result == HEWN_BAD_INPUT ? hewn_blame_input(result, desc->scene.path, error) : result;
+    if (desc->simplify)
+        HEWN_TRY(simplify(job, error));
     HEWN_TRY(certify(job, error));
     return write_mesh(job, error);
 }

@@ -153,6 +153,7 @@ static void open_sandbox(lua_State *L)
     int methods = hewn_lua_open_fields(L);
     hewn_lua_open_arithmetic(L, methods);
     hewn_lua_open_shapes(L);
+    hewn_lua_open_catalogue(L, methods);
     hewn_lua_open_combining(L, methods);
     hewn_lua_open_moving(L, methods);
     hewn_lua_open_scene(L);

@@ -1,4 +1,5 @@
-/* The shapes a scene can name. Each checks its measures itself, so that the message says which argument is wrong. */
+/* Shapes whose arguments depend on each other or may be left out; the others are read by the catalogue. Each checks its
+ * measures itself, so that the message says which argument is wrong. */
 #include <math.h>
 
 #include "scene/lua_state.h"
@@ -14,12 +15,6 @@ static double at_least_zero(lua_State *L, int argument, const char *name)
     if (value < 0)
         hewn_lua_argument_error(L, argument, name, "a number of at least 0");
     return value;
-}
-
-static int sphere(lua_State *L)
-{
-    hewn_lua_check_count(L, "sphere", 1, 1);
-    return hewn_lua_push_field(L, hewn_sphere(field_of(L), hewn_lua_positive(L, 1, "sphere")));
 }
 
 static int box(lua_State *L)
@@ -48,27 +43,6 @@ static int rounded_box(lua_State *L)
     return hewn_lua_push_field(L, hewn_rounded_box(field_of(L), size[0], size[1], size[2], radius));
 }
 
-static int torus(lua_State *L)
-{
-    hewn_lua_check_count(L, "torus", 2, 2);
-    double major = hewn_lua_positive(L, 1, "torus"), minor = hewn_lua_positive(L, 2, "torus");
-    return hewn_lua_push_field(L, hewn_torus(field_of(L), major, minor));
-}
-
-static int cylinder(lua_State *L)
-{
-    hewn_lua_check_count(L, "cylinder", 2, 2);
-    double radius = hewn_lua_positive(L, 1, "cylinder"), height = hewn_lua_positive(L, 2, "cylinder");
-    return hewn_lua_push_field(L, hewn_cylinder(field_of(L), radius, height));
-}
-
-static int capsule(lua_State *L)
-{
-    hewn_lua_check_count(L, "capsule", 2, 2);
-    double radius = hewn_lua_positive(L, 1, "capsule"), height = at_least_zero(L, 2, "capsule");
-    return hewn_lua_push_field(L, hewn_capsule(field_of(L), radius, height));
-}
-
 static int cone(lua_State *L)
 {
     hewn_lua_check_count(L, "cone", 3, 3);
@@ -79,22 +53,31 @@ static int cone(lua_State *L)
     return hewn_lua_push_field(L, hewn_cone(field_of(L), bottom, top, height));
 }
 
-static int plane(lua_State *L)
+static int push_plane(lua_State *L, const char *name)
 {
     double value[4];
-    hewn_lua_check_count(L, "plane", 4, 4);
+    hewn_lua_check_count(L, name, 4, 4);
     for (int i = 0; i < 4; i++)
-        value[i] = hewn_lua_number(L, i + 1, "plane");
+        value[i] = hewn_lua_number(L, i + 1, name);
     if (value[0] == 0 && value[1] == 0 && value[2] == 0)
-        return luaL_error(L, "plane: the normal must not be 0, 0, 0");
+        return luaL_error(L, "%s: the normal must not be 0, 0, 0", name);
     return hewn_lua_push_field(L, hewn_plane(field_of(L), value[0], value[1], value[2], value[3]));
+}
+
+static int plane(lua_State *L)
+{
+    return push_plane(L, "plane");
+}
+
+static int half_space(lua_State *L)
+{
+    return push_plane(L, "half_space");
 }
 
 void hewn_lua_open_shapes(lua_State *L)
 {
-    static const luaL_Reg shapes[] = {{"sphere", sphere}, {"box", box},           {"rounded_box", rounded_box},
-                                      {"torus", torus},   {"cylinder", cylinder}, {"capsule", capsule},
-                                      {"cone", cone},     {"plane", plane},       {NULL, NULL}};
+    static const luaL_Reg shapes[] = {{"box", box},     {"rounded_box", rounded_box}, {"cone", cone},
+                                      {"plane", plane}, {"half_space", half_space},   {NULL, NULL}};
     for (const luaL_Reg *shape = shapes; shape->name; shape++)
         hewn_lua_add_function(L, 0, shape->name, shape->func);
 }

@@ -90,6 +90,7 @@ void hewn_lua_open_strings(lua_State *L);
 void hewn_lua_open_tables(lua_State *L);
 int hewn_lua_open_fields(lua_State *L); /* leaves the table of methods on the stack and returns its index */
 void hewn_lua_open_arithmetic(lua_State *L, int methods);
+void hewn_lua_open_catalogue(lua_State *L, int methods);
 void hewn_lua_open_shapes(lua_State *L);
 void hewn_lua_open_combining(lua_State *L, int methods);
 void hewn_lua_open_moving(lua_State *L, int methods);

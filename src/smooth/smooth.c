@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "mesh/cut.h"
+#include "smooth/blocks.h"
 #include "smooth/cotangent.h"
 #include "smooth/desc.h"
 
@@ -53,18 +54,42 @@ typedef struct frame {
     double origin[3], scale;
 } frame;
 
+typedef struct extent {
+    double lo[3], hi[3];
+} extent;
+
+static extent find_extent(const hewn_polygons *polygons)
+{
+    extent all[SMOOTH_BLOCKS];
+#pragma omp parallel for schedule(static)
+    for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++) {
+        extent one = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+        uint64_t end = smooth_block_begin(polygons->vertex_count, SMOOTH_BLOCKS, block + 1);
+        for (uint64_t v = smooth_block_begin(polygons->vertex_count, SMOOTH_BLOCKS, block); v < end; v++)
+            for (uint64_t axis = 0; axis < 3; axis++) {
+                double x = polygons->positions[3 * v + axis];
+                one.lo[axis] = x < one.lo[axis] ? x : one.lo[axis];
+                one.hi[axis] = x > one.hi[axis] ? x : one.hi[axis];
+            }
+        all[block] = one;
+    }
+    for (uint32_t block = 1; block < SMOOTH_BLOCKS; block++)
+        for (int axis = 0; axis < 3; axis++) {
+            all[0].lo[axis] = fmin(all[0].lo[axis], all[block].lo[axis]);
+            all[0].hi[axis] = fmax(all[0].hi[axis], all[block].hi[axis]);
+        }
+    return all[0];
+}
+
 /* Coordinates are brought to at most 1 by a power of two, so that no square of them overflows. */
 static frame find_frame(const hewn_polygons *polygons)
 {
-    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY}, most = 0;
+    double most = 0;
     frame out = {{0, 0, 0}, 1};
-    for (uint64_t i = 0; i < 3 * polygons->vertex_count; i++) {
-        lo[i % 3] = fmin(lo[i % 3], polygons->positions[i]);
-        hi[i % 3] = fmax(hi[i % 3], polygons->positions[i]);
-    }
+    extent whole = find_extent(polygons);
     for (int axis = 0; axis < 3 && polygons->vertex_count > 0; axis++) {
-        out.origin[axis] = lo[axis] / 2 + hi[axis] / 2;
-        most = fmax(most, hi[axis] / 2 - lo[axis] / 2);
+        out.origin[axis] = whole.lo[axis] / 2 + whole.hi[axis] / 2;
+        most = fmax(most, whole.hi[axis] / 2 - whole.lo[axis] / 2);
     }
     int exponent = 0;
     (void)frexp(most, &exponent);
@@ -73,36 +98,44 @@ static frame find_frame(const hewn_polygons *polygons)
     return out;
 }
 
-static void measure(const smooth_work *work, const double *positions, double scale, double *volume, double *area)
+/* What is measured of triangles. */
+typedef struct measures {
+    double volume, area, sides;
+} measures;
+
+static measures measure_block(const smooth_work *work, const double *positions, uint64_t begin, uint64_t end)
 {
-    double volume_sum = 0, area_sum = 0;
-    for (uint64_t t = 0; t < work->cut.face_count; t++) {
+    measures sum = {0, 0, 0};
+    for (uint64_t t = begin; t < end; t++) {
         const uint32_t *corner = work->cut.corners + 3 * t;
         const double *a = positions + 3 * (size_t)corner[0], *b = positions + 3 * (size_t)corner[1],
                      *c = positions + 3 * (size_t)corner[2];
-        double u[3], v[3], n[3];
+        double u[3], v[3], w[3], n[3];
         smooth_between(a, b, u);
         smooth_between(a, c, v);
+        smooth_between(b, c, w);
         smooth_cross(u, v, n);
-        volume_sum += smooth_dot(a, n) / 6;
-        area_sum += sqrt(smooth_dot(n, n)) / 2;
+        sum.volume += smooth_dot(a, n) / 6;
+        sum.area += sqrt(smooth_dot(n, n)) / 2;
+        sum.sides += sqrt(smooth_dot(u, u)) + sqrt(smooth_dot(v, v)) + sqrt(smooth_dot(w, w));
     }
-    *volume = volume_sum * scale * scale * scale;
-    *area = area_sum * scale * scale;
+    return sum;
 }
 
-static double mean_edge(const smooth_work *work)
+static measures measure(const smooth_work *work, const double *positions)
 {
-    double sum = 0;
-    uint64_t count = 3 * work->cut.face_count;
-    for (uint64_t t = 0; t < work->cut.face_count; t++)
-        for (uint64_t k = 0; k < 3; k++) {
-            double side[3];
-            smooth_between(work->at + 3 * (size_t)work->cut.corners[3 * t + k],
-                           work->at + 3 * (size_t)work->cut.corners[3 * t + (k + 1) % 3], side);
-            sum += sqrt(smooth_dot(side, side));
-        }
-    return count > 0 ? sum / (double)count : 0;
+    measures all[SMOOTH_BLOCKS];
+    uint64_t count = work->cut.face_count;
+#pragma omp parallel for schedule(static)
+    for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
+        all[block] = measure_block(work, positions, smooth_block_begin(count, SMOOTH_BLOCKS, block),
+                                   smooth_block_begin(count, SMOOTH_BLOCKS, block + 1));
+    for (uint32_t block = 1; block < SMOOTH_BLOCKS; block++) {
+        all[0].volume += all[block].volume;
+        all[0].area += all[block].area;
+        all[0].sides += all[block].sides;
+    }
+    return all[0];
 }
 
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
@@ -140,8 +173,10 @@ static hewn_result prepare(smooth_work *work, const frame *from, hewn_error *err
     work->next = hewn_alloc(count, 3 * sizeof *work->next);
     if (!work->flags || !work->at || !work->next)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
-    for (size_t i = 0; i < 3 * count; i++)
-        work->at[i] = (work->polygons->positions[i] - from->origin[i % 3]) / from->scale;
+#pragma omp parallel for schedule(static)
+    for (size_t v = 0; v < count; v++)
+        for (size_t axis = 0; axis < 3; axis++)
+            work->at[3 * v + axis] = (work->polygons->positions[3 * v + axis] - from->origin[axis]) / from->scale;
     HEWN_TRY(cut_faces(work, error));
     return hewn_smooth_neighbours(work->polygons, &work->neighbours, work->flags, error);
 }
@@ -157,27 +192,51 @@ static hewn_result run_method(smooth_work *work, hewn_error *error)
     }
 }
 
+typedef struct moves {
+    double sum, largest;
+    uint32_t first_lost; /* the first vertex that would not stay finite */
+} moves;
+
 /* Vertices that have not moved keep their bits. */
+static moves bring_block_back(const smooth_work *work, const frame *from, const double *before, uint32_t begin,
+                              uint32_t end)
+{
+    moves made = {0, 0, UINT32_MAX};
+    for (uint32_t v = begin; v < end; v++) {
+        double move[3], *out = work->next + 3 * (size_t)v;
+        smooth_between(before + 3 * (size_t)v, work->at + 3 * (size_t)v, move);
+        for (size_t axis = 0; axis < 3; axis++) {
+            size_t i = 3 * (size_t)v + axis;
+            out[axis] = move[axis] == 0 ? work->polygons->positions[i] : from->origin[axis] + work->at[i] * from->scale;
+            if (!isfinite(out[axis]) && made.first_lost > v)
+                made.first_lost = v;
+        }
+        double length = sqrt(smooth_dot(move, move)) * from->scale;
+        made.sum += length;
+        made.largest = length > made.largest ? length : made.largest;
+    }
+    return made;
+}
+
 static hewn_result bring_back(const smooth_work *work, const frame *from, const double *before, double *positions,
                               hewn_error *error)
 {
     hewn_smooth_report *report = work->report;
-    double *out = work->next, sum = 0;
-    for (uint32_t v = 0; v < work->count; v++) {
-        double move[3];
-        smooth_between(before + 3 * (size_t)v, work->at + 3 * (size_t)v, move);
-        double length = sqrt(smooth_dot(move, move)) * from->scale;
-        for (size_t axis = 0; axis < 3; axis++) {
-            size_t i = 3 * (size_t)v + axis;
-            out[i] = move[axis] == 0 ? work->polygons->positions[i] : from->origin[axis] + work->at[i] * from->scale;
-            if (!isfinite(out[i]))
-                return hewn_fail(error, HEWN_LIMIT, "vertex %u would not stay finite", v);
-        }
-        sum += length;
-        report->largest_move = fmax(report->largest_move, length);
+    moves all[SMOOTH_BLOCKS];
+#pragma omp parallel for schedule(static)
+    for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
+        all[block] =
+            bring_block_back(work, from, before, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
+                             (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
+    double sum = 0;
+    for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++) {
+        if (all[block].first_lost != UINT32_MAX)
+            return hewn_fail(error, HEWN_LIMIT, "vertex %u would not stay finite", all[block].first_lost);
+        sum += all[block].sum;
+        report->largest_move = fmax(report->largest_move, all[block].largest);
     }
     report->mean_move = work->count > 0 ? sum / work->count : 0;
-    memcpy(positions, out, 3 * (size_t)work->count * sizeof *positions);
+    memcpy(positions, work->next, 3 * (size_t)work->count * sizeof *positions);
     return HEWN_OK;
 }
 
@@ -186,13 +245,17 @@ static hewn_result run(smooth_work *work, hewn_smooth_desc *desc, double *positi
     frame from = find_frame(work->polygons);
     hewn_smooth_report *report = work->report;
     HEWN_TRY(prepare(work, &from, error));
-    desc->step = desc->step > 0 ? desc->step / from.scale : mean_edge(work);
+    measures found = measure(work, work->at);
+    const double square = from.scale * from.scale;
+    report->volume_before = found.volume * square * from.scale;
+    report->area_before = found.area * square;
+    double mean_edge = work->cut.face_count > 0 ? found.sides / (3 * (double)work->cut.face_count) : 0;
+    desc->step = desc->step > 0 ? desc->step / from.scale : mean_edge;
     desc->radius /= from.scale;
     bool triangles = desc->method == HEWN_SMOOTH_COTAN || desc->method == HEWN_SMOOTH_IMPLICIT ||
                      desc->method == HEWN_SMOOTH_BILATERAL;
     if (triangles)
         HEWN_TRY(hewn_smooth_corners(&work->cut, &work->fans, error));
-    measure(work, work->at, from.scale, &report->volume_before, &report->area_before);
     HEWN_TRY(hewn_smooth_lock(work, error));
     double *before = hewn_alloc(work->count, 3 * sizeof *before);
     if (!before)
@@ -202,7 +265,9 @@ static hewn_result run(smooth_work *work, hewn_smooth_desc *desc, double *positi
     if (result == HEWN_OK && desc->volume == HEWN_SMOOTH_VOLUME_KEPT)
         result = hewn_smooth_keep_volume(work, before, error);
     if (result == HEWN_OK) {
-        measure(work, work->at, from.scale, &report->volume_after, &report->area_after);
+        found = measure(work, work->at);
+        report->volume_after = found.volume * square * from.scale;
+        report->area_after = found.area * square;
         result = bring_back(work, &from, before, positions, error);
     }
     hewn_free(before);

@@ -4,21 +4,25 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "smooth/blocks.h"
 #include "smooth/work.h"
 
 /* The volume of a component at distance s: c[0] + c[1] s + c[2] s^2 + c[3] s^3. */
 typedef struct component {
-    double before, c[4], shift;
+    double before, c[4];
     uint64_t balance; /* 0 where each edge is run along as often one way as the other */
 } component;
+
+enum { MOST_SUMS = 1 << 16 }; /* of components by blocks */
 
 typedef struct keeper {
     smooth_work *work;
     const double *before;
     uint32_t *root; /* of each vertex in a union-find, then its component */
     double *directions;
-    component *components;
-    uint32_t count;
+    uint32_t count, blocks;
+    component *components; /* for each block of triangles */
+    double *shifts;        /* of components */
 } keeper;
 
 static uint32_t find_root(uint32_t *root, uint32_t v)
@@ -62,10 +66,10 @@ static double det(const double *a, const double *b, const double *c)
     return smooth_dot(a, n);
 }
 
-static void add_triangle(keeper *keep, const uint32_t *corner)
+static void add_triangle(const keeper *keep, const uint32_t *corner, component *components)
 {
     const double *p[3], *d[3], *was[3];
-    component *to = &keep->components[keep->root[corner[0]]];
+    component *to = &components[keep->root[corner[0]]];
     for (int k = 0; k < 3; k++) {
         p[k] = keep->work->at + 3 * (size_t)corner[k];
         d[k] = keep->directions + 3 * (size_t)corner[k];
@@ -78,6 +82,26 @@ static void add_triangle(keeper *keep, const uint32_t *corner)
     to->c[1] += (det(d[0], p[1], p[2]) + det(p[0], d[1], p[2]) + det(p[0], p[1], d[2])) / 6;
     to->c[2] += (det(d[0], d[1], p[2]) + det(d[0], p[1], d[2]) + det(p[0], d[1], d[2])) / 6;
     to->c[3] += det(d[0], d[1], d[2]) / 6;
+}
+
+static void add_triangles(const keeper *keep)
+{
+    const hewn_polygons *cut = &keep->work->cut;
+#pragma omp parallel for schedule(static)
+    for (uint32_t block = 0; block < keep->blocks; block++) {
+        uint64_t end = smooth_block_begin(cut->face_count, keep->blocks, block + 1);
+        for (uint64_t t = smooth_block_begin(cut->face_count, keep->blocks, block); t < end; t++)
+            add_triangle(keep, cut->corners + 3 * t, keep->components + (size_t)block * keep->count);
+    }
+    for (size_t block = 1; block < keep->blocks; block++)
+        for (size_t i = 0; i < keep->count; i++) {
+            component *to = &keep->components[i];
+            const component *part = to + block * keep->count;
+            to->before += part->before;
+            to->balance += part->balance;
+            for (int k = 0; k < 4; k++)
+                to->c[k] += part->c[k];
+        }
 }
 
 /* Unit normals where a vertex is free, scaled by its freedom. */
@@ -123,15 +147,15 @@ static void move(keeper *keep)
 {
     smooth_work *work = keep->work;
     for (uint32_t i = 0; i < keep->count; i++) {
-        component *part = &keep->components[i];
+        const component *part = &keep->components[i];
         bool closed = part->balance == 0 && part->before != 0;
-        part->shift = closed ? find_shift(part) : 0;
+        keep->shifts[i] = closed ? find_shift(part) : 0;
         work->report->closed_components += closed;
     }
+#pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < work->count; v++)
         for (size_t axis = 0; axis < 3; axis++)
-            work->at[3 * (size_t)v + axis] +=
-                keep->components[keep->root[v]].shift * keep->directions[3 * (size_t)v + axis];
+            work->at[3 * (size_t)v + axis] += keep->shifts[keep->root[v]] * keep->directions[3 * (size_t)v + axis];
 }
 
 hewn_result hewn_smooth_keep_volume(smooth_work *work, const double *before, hewn_error *error)
@@ -140,15 +164,18 @@ hewn_result hewn_smooth_keep_volume(smooth_work *work, const double *before, hew
     keep.directions = hewn_alloc(work->count, 3 * sizeof *keep.directions);
     if (keep.root && keep.directions) {
         join_components(&keep);
-        keep.components = hewn_alloc_zero(keep.count, sizeof *keep.components);
+        uint32_t most = MOST_SUMS / (keep.count > 0 ? keep.count : 1);
+        keep.blocks = most > SMOOTH_BLOCKS ? SMOOTH_BLOCKS : most > 1 ? most : 1;
+        keep.components = hewn_alloc_zero((size_t)keep.count * keep.blocks, sizeof *keep.components);
+        keep.shifts = hewn_alloc(keep.count, sizeof *keep.shifts);
     }
-    if (keep.components) {
+    bool room = keep.components && keep.shifts;
+    if (room) {
         find_directions(&keep);
-        for (uint64_t t = 0; t < work->cut.face_count; t++)
-            add_triangle(&keep, work->cut.corners + 3 * t);
+        add_triangles(&keep);
         move(&keep);
     }
-    bool room = keep.components != NULL;
+    hewn_free(keep.shifts);
     hewn_free(keep.components);
     hewn_free(keep.directions);
     hewn_free(keep.root);

@@ -58,6 +58,8 @@ static inline void code_parameters(hewn_op op, uint64_t *state, double *p)
         for (int i = 0; i < 3; i++)
             p[i] = n[i] / length;
     }
+    if (op >= HEWN_OP_NOISE_VALUE && op <= HEWN_OP_NOISE_CELLULAR)
+        p[0] = gpu_test_random(state) % 0x1000000u;
     if (op == HEWN_OP_CONE && gpu_test_random(state) % 3 == 0)
         p[gpu_test_random(state) % 2] = 0;
     if (op == HEWN_OP_BLEND_EXPONENTIAL)
@@ -112,7 +114,7 @@ static inline hewn_field *code_random_graph(uint64_t *state, size_t size, hewn_n
             operands[i] = back < count ? ids[count - 1 - back] : ids[gpu_test_random(state) % 3];
         }
         hewn_op op = (hewn_op)(gpu_test_random(state) % HEWN_OP_COUNT);
-        if (op <= HEWN_OP_Z)
+        if (op <= HEWN_OP_Z || hewn_op_is_link(op))
             continue;
         if (hewn_op_infos[op].operands == 3 && gpu_test_random(state) % 2)
             for (int i = 0; i < 3; i++)

@@ -476,6 +476,35 @@ static void test_refusals_say_why(void **state)
     expect_refusal(make_sphere, &nan, HEWN_INVALID_ARGUMENT, "bounds");
 }
 
+/* NaN where both squares overflow, and a number elsewhere. */
+static hewn_node make_saddle(hewn_field *field)
+{
+    hewn_node saddle = hewn_sub(field, hewn_square(field, hewn_x(field)), hewn_square(field, hewn_y(field)));
+    return hewn_union(field, hewn_z(field), saddle);
+}
+
+/* Kernels take on trust that a sum of squares is a number only as far out as it is. */
+static void test_far_out(void **state)
+{
+    (void)state;
+    subject made = make_subject(make_saddle);
+    hewn_extract_desc near = {.bounds = unit_cube, .resolution = 24, .method = HEWN_METHOD_MARCHING_CUBES};
+    hewn_extract_desc far = {.bounds = {{1e24, 1e24, -1e24}, {2e25, 2e25, 1e24}}, .resolution = 24};
+    hewn_triangles before, mesh, after;
+    hewn_error error = {0};
+    must(hewn_extract(made.extractor, &near, &before, NULL, &error), &error);
+    assert_int_equal(hewn_extract(made.extractor, &far, &mesh, NULL, &error), HEWN_BAD_INPUT);
+    assert_non_null(strstr(error.message, "NaN"));
+    must(hewn_extract(made.extractor, &near, &after, NULL, &error), &error);
+    assert_true(before.triangle_count > 0);
+    assert_int_equal(before.triangle_count, after.triangle_count);
+    assert_memory_equal(before.positions, after.positions, 12 * before.vertex_count);
+    assert_memory_equal(before.indices, after.indices, 12 * before.triangle_count);
+    hewn_triangles_destroy(&before);
+    hewn_triangles_destroy(&after);
+    free_subject(&made);
+}
+
 typedef struct countdown {
     int left;
 } countdown;
@@ -518,6 +547,7 @@ int main(void)
         cmocka_unit_test(test_caps_lie_on_grown_bounds),
         cmocka_unit_test(test_same_bytes_every_time),
         cmocka_unit_test(test_refusals_say_why),
+        cmocka_unit_test(test_far_out),
         cmocka_unit_test(test_cancel_at_every_stage),
     };
     return cmocka_run_group_tests_name("extract", tests, open_device, close_device);

@@ -110,9 +110,8 @@ static void test_field_kernels(void **state)
     CHECK(hewn_sign_push, GRID(hewn_sign_push), MEMBER(hewn_sign_push, count, NUMBER),
           MEMBER(hewn_sign_push, bricks, ADDRESS), MEMBER(hewn_sign_push, signs, ADDRESS));
     CHECK(hewn_vertex_push, GRID(hewn_vertex_push), MEMBER(hewn_vertex_push, count, NUMBER),
-          MEMBER(hewn_vertex_push, dual, NUMBER), MEMBER(hewn_vertex_push, bricks, ADDRESS),
-          MEMBER(hewn_vertex_push, positions, ADDRESS), MEMBER(hewn_vertex_push, normals, ADDRESS),
-          MEMBER(hewn_vertex_push, summary, ADDRESS));
+          MEMBER(hewn_vertex_push, dual, NUMBER), MEMBER(hewn_vertex_push, positions, ADDRESS),
+          MEMBER(hewn_vertex_push, normals, ADDRESS), MEMBER(hewn_vertex_push, summary, ADDRESS));
 }
 
 static void test_fixed_kernels(void **state)
@@ -125,9 +124,8 @@ static void test_fixed_kernels(void **state)
     CHECK(hewn_clip_push, MEMBER(hewn_clip_push, dense[0], NUMBER), MEMBER(hewn_clip_push, tested, NUMBER),
           MEMBER(hewn_clip_push, top[0], NUMBER), MEMBER(hewn_clip_push, level, NUMBER),
           MEMBER(hewn_clip_push, below, NUMBER), MEMBER(hewn_clip_push, begin, NUMBER),
-          MEMBER(hewn_clip_push, end, NUMBER), MEMBER(hewn_clip_push, listed, NUMBER),
-          MEMBER(hewn_clip_push, parents, ADDRESS), MEMBER(hewn_clip_push, states, ADDRESS),
-          MEMBER(hewn_clip_push, flags, ADDRESS), MEMBER(hewn_clip_push, lengths, ADDRESS));
+          MEMBER(hewn_clip_push, end, NUMBER), MEMBER(hewn_clip_push, parents, ADDRESS),
+          MEMBER(hewn_clip_push, states, ADDRESS), MEMBER(hewn_clip_push, flags, ADDRESS));
     CHECK(hewn_link_push, MEMBER(hewn_link_push, top[0], NUMBER), MEMBER(hewn_link_push, levels, NUMBER),
           MEMBER(hewn_link_push, count, NUMBER), MEMBER(hewn_link_push, bricks, ADDRESS),
           MEMBER(hewn_link_push, links, ADDRESS), MEMBER(hewn_link_push, states[0], ADDRESS),
@@ -192,16 +190,16 @@ static void test_list_kernels(void **state)
           MEMBER(hewn_choose_push, dense[0], NUMBER), MEMBER(hewn_choose_push, dense[2], NUMBER),
           MEMBER(hewn_choose_push, tested, NUMBER), MEMBER(hewn_choose_push, parents, ADDRESS),
           MEMBER(hewn_choose_push, parent_ranges, ADDRESS), MEMBER(hewn_choose_push, states, ADDRESS),
-          MEMBER(hewn_choose_push, flags, ADDRESS), MEMBER(hewn_choose_push, lengths, ADDRESS),
-          MEMBER(hewn_choose_push, choices, ADDRESS));
+          MEMBER(hewn_choose_push, flags, ADDRESS), MEMBER(hewn_choose_push, choices, ADDRESS));
     CHECK(hewn_gather_push, MEMBER(hewn_gather_push, dense[0], NUMBER), MEMBER(hewn_gather_push, tested, NUMBER),
           MEMBER(hewn_gather_push, parents, ADDRESS), MEMBER(hewn_gather_push, states, ADDRESS),
           MEMBER(hewn_gather_push, ranks, ADDRESS), MEMBER(hewn_gather_push, kept, ADDRESS),
           MEMBER(hewn_gather_push, origins, ADDRESS));
-    CHECK(hewn_keep_push, MEMBER(hewn_keep_push, count, NUMBER), MEMBER(hewn_keep_push, dense, NUMBER),
-          MEMBER(hewn_keep_push, parent_ranges, ADDRESS), MEMBER(hewn_keep_push, origins, ADDRESS),
-          MEMBER(hewn_keep_push, places, ADDRESS), MEMBER(hewn_keep_push, choices, ADDRESS),
-          MEMBER(hewn_keep_push, lists, ADDRESS), MEMBER(hewn_keep_push, ranges, ADDRESS));
+    CHECK(hewn_keep_push, MEMBER(hewn_keep_push, dense, NUMBER), MEMBER(hewn_keep_push, write, NUMBER),
+          MEMBER(hewn_keep_push, kept, ADDRESS), MEMBER(hewn_keep_push, parent_ranges, ADDRESS),
+          MEMBER(hewn_keep_push, origins, ADDRESS), MEMBER(hewn_keep_push, places, ADDRESS),
+          MEMBER(hewn_keep_push, choices, ADDRESS), MEMBER(hewn_keep_push, lists, ADDRESS),
+          MEMBER(hewn_keep_push, ranges, ADDRESS));
     CHECK(hewn_listed_vertex_push, GRID(hewn_listed_vertex_push), MEMBER(hewn_listed_vertex_push, count, NUMBER),
           MEMBER(hewn_listed_vertex_push, vertex_count, NUMBER), MEMBER(hewn_listed_vertex_push, bricks, ADDRESS),
           MEMBER(hewn_listed_vertex_push, vertex_bases, ADDRESS), MEMBER(hewn_listed_vertex_push, positions, ADDRESS),

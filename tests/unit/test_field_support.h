@@ -104,6 +104,8 @@ static inline void random_parameters(random_state *random, hewn_op op, double *p
     if (op == HEWN_OP_AFFINE || op == HEWN_OP_PLANE)
         for (int i = 0; i < 4; i++)
             p[i] = random_below(random, 4) == 0 ? 0 : random_between(random, -2, 2);
+    if (op >= HEWN_OP_NOISE_VALUE && op <= HEWN_OP_NOISE_CELLULAR)
+        p[0] = random_below(random, 0x1000000u);
     if (op == HEWN_OP_CONE && random_below(random, 3) == 0)
         p[random_below(random, 2)] = 0;
     if (op == HEWN_OP_BLEND_EXPONENTIAL)
@@ -126,7 +128,8 @@ static inline hewn_node random_graph(random_state *random, hewn_field *field, in
         bool wild = data.op == HEWN_OP_SQRT || (data.op >= HEWN_OP_TAN && data.op <= HEWN_OP_ACOS) ||
                     (data.op >= HEWN_OP_EXP && data.op <= HEWN_OP_NOT) || data.op == HEWN_OP_DIV ||
                     (data.op >= HEWN_OP_MOD && data.op <= HEWN_OP_OR);
-        if (calm && wild)
+        wild = wild || data.op == HEWN_OP_NOISE_SIMPLEX; /* huge coordinates leave no digits to its lattice */
+        if ((calm && wild) || hewn_op_is_link(data.op))
             continue;
         for (int k = 0; k < hewn_op_infos[data.op].operands; k++) {
             int recent = have < 12 ? have : 12;

@@ -2,6 +2,8 @@
  */
 #include "test_scene.h"
 
+#include "field/catalogue.h"
+
 static char *read_document(void)
 {
     char path[512];
@@ -77,7 +79,7 @@ static void test_every_function_has_a_row(void **state)
     static const char lua_names[] = " assert error getmetatable ipairs next pairs pcall print rawequal rawget rawlen "
                                     "rawset select setmetatable tonumber tostring type xpcall _G _VERSION math string "
                                     "table utf8 x y z ";
-    char *text = read_document(), names[4096], script[8192];
+    char *text = read_document(), names[8192], script[16384];
     list_functions(text, names, sizeof names);
     /* Each row is a global function; each global is a row, or one of Lua's own; each of Lua's own is in the text. */
     snprintf(script, sizeof script,
@@ -110,7 +112,7 @@ static void test_methods_are_as_told(void **state)
 {
     (void)state;
     static const char *const chapters[] = {"## Fields and numbers", "## Combining", "## Moving"};
-    char *text = read_document(), names[4096], script[8192];
+    char *text = read_document(), names[8192], script[16384];
     for (size_t i = 0; i < 3; i++) {
         char *begin = strstr(text, chapters[i]);
         assert_non_null(begin);
@@ -129,9 +131,29 @@ static void test_methods_are_as_told(void **state)
     test_refused("return x:sphere(1)", HEWN_SCENE_LUA, 1, "a field has no method 'sphere'");
 }
 
+/* The tables are those of the catalogue, word for word (`./dev docs` writes them). */
+static void test_tables_are_the_catalogue(void **state)
+{
+    (void)state;
+    char *text = read_document();
+    for (int section = 0; section < HEWN_SECTIONS; section++) {
+        hewn_text table = {0};
+        const char *name = hewn_section_name((hewn_section)section);
+        hewn_text_print(&table, "<!-- table: %s -->\n", name);
+        hewn_catalogue_write((hewn_section)section, &table);
+        hewn_text_append(&table, "<!-- end -->\n");
+        assert_false(table.failed);
+        if (!strstr(text, table.bytes))
+            fail_msg("the table of %s in docs/scene.md is not that of src/field/catalogue.c: run ./dev docs", name);
+        hewn_text_clear(&table);
+    }
+    free(text);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tables_are_the_catalogue),
         cmocka_unit_test(test_examples_run),
         cmocka_unit_test(test_every_function_has_a_row),
         cmocka_unit_test(test_methods_are_as_told),

@@ -182,6 +182,8 @@ void complete(json &document, const hewn_gltf_desc &desc, size_t length, additio
     }
     if (desc.conversion)
         document["asset"]["extras"]["conversion"] = json::parse(desc.conversion);
+    if (desc.space)
+        document["asset"]["extras"]["space"] = desc.space;
 }
 
 /* tinygltf wants to own a buffer's bytes; here they are streamed later, so only their number is added to its JSON. */

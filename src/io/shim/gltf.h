@@ -59,6 +59,7 @@ typedef struct hewn_gltf_desc {
     hewn_gltf_topology topology;
     uint64_t merge_count;
     const char *conversion; /* JSON that goes to the asset's extras; NULL: none */
+    const char *space;      /* likewise, as a string */
 } hewn_gltf_desc;
 
 hewn_result hewn_gltf_compose(const hewn_gltf_desc *desc, hewn_text *out, hewn_error *error);

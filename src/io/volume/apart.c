@@ -119,17 +119,17 @@ static hewn_result wait_for(const hewn_apart *job, pid_t child, int *status, hew
 {
     struct timespec pause = {0, 200000}; /* 0.2 ms at first, then longer */
     for (;;) {
-        pid_t ended = waitpid(child, status, WNOHANG);
-        if (ended == child)
-            return HEWN_OK;
-        if (ended < 0 && errno != EINTR)
-            return hewn_fail_at(error, HEWN_IO, job->name, 0, "the process that reads it is lost");
         hewn_result result = hewn_progress_report(job->desc->progress, "load", 0.5, error);
         if (result != HEWN_OK) {
             kill(child, SIGKILL);
             waitpid(child, status, 0);
             return result;
         }
+        pid_t ended = waitpid(child, status, WNOHANG);
+        if (ended == child)
+            return HEWN_OK;
+        if (ended < 0 && errno != EINTR)
+            return hewn_fail_at(error, HEWN_IO, job->name, 0, "the process that reads it is lost");
         nanosleep(&pause, NULL);
         pause.tv_nsec = pause.tv_nsec < 20000000 ? 2 * pause.tv_nsec : pause.tv_nsec;
     }

@@ -1,0 +1,16 @@
+-- A small creature: everything melted into everything, one half mirrored, and a skin of fine noise.
+local body = ellipsoid(0.9, 0.6, 0.6)
+local head = sphere(0.45):move(1, 0.5, 0)
+local snout = round_cone(0.26, 0.16, 0.3):rotate_z(-100):move(1.4, 0.4, 0)
+local neck = capsule(0.28, 0.5):rotate_z(-55):move(0.75, 0.3, 0)
+local tail = bezier_tube({{-0.7, 0.1, 0}, {-1.4, 0, 0}, {-1.5, 0.9, 0}, {-1.1, 1, 0}}, 0.1)
+local legs = round_cone(0.16, 0.2, 0.7):move(0.5, -0.6, 0.32) | round_cone(0.16, 0.22, 0.7):move(-0.5, -0.6, 0.32)
+local feet = ellipsoid(0.24, 0.12, 0.18):move(0.58, -1, 0.32) | ellipsoid(0.24, 0.12, 0.18):move(-0.42, -1, 0.32)
+local ear = ellipsoid(0.1, 0.3, 0.18):rotate_x(25):move(0.9, 0.95, 0.28)
+local eye = sphere(0.09):move(1.28, 0.66, 0.24)
+
+local half = smooth_union(smooth_union(legs, feet, 0.15), ear, 0.1):symmetric("z")
+local all = smooth_union(smooth_union(body, neck, 0.3), smooth_union(head, snout, 0.2), 0.25)
+all = smooth_union(smooth_union(all, tail, 0.2), half, 0.18)
+all = all:displace(0.02 * noise(0.15, 3, "simplex"))
+return all | eye:symmetric("z")

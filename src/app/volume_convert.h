@@ -1,0 +1,30 @@
+/* `hewn convert` of a volume. */
+#ifndef HEWN_SRC_APP_VOLUME_CONVERT_H
+#define HEWN_SRC_APP_VOLUME_CONVERT_H
+
+#include "app/app.h"
+
+#define HEWN_OPTIONS_VOLUME_MESH                                                                                       \
+    {0, "method", "NAME",                                                                                              \
+     "Of a volume: mc33 (connected as the trilinear interpolant of the samples is) or mc (marching cubes by signs "    \
+     "alone). Default: mc33."},                                                                                        \
+        {0, "inside", "SIDE",                                                                                          \
+         "What of a volume is inside: above (values from the iso value on) or below. Default: below of a level set, "  \
+         "else above."},                                                                                               \
+        {0, "space", "SPACE",                                                                                          \
+         "Write a volume's mesh in ras or lps (of the patient), gltf (+Y up, front to +Z, in metres), world (as the "  \
+         "file has it) or voxel (i, j, k). Default: gltf for GLB, else ras, or world where the file knows no "         \
+         "patient."},                                                                                                  \
+        {0, "open", NULL,                                                                                              \
+         "Leave the surface open where it leaves the volume. Default: close it there with a flat cap."},               \
+    {                                                                                                                  \
+        0, "threads", "N", "Mesh a volume with N threads. Default: one for each processor."                            \
+    }
+
+/* Whether any of the options above is given, or of those that say how a volume is read. */
+bool hewn_volume_convert_any(const hewn_arguments *arguments);
+
+/* Reads the arguments, runs the job and prints what was done, unless quiet. Returns the exit code. */
+int hewn_volume_convert_run(const hewn_command *command, const hewn_arguments *arguments, hewn_volume_format format);
+
+#endif

@@ -1,0 +1,131 @@
+/* A frame of samples as extraction on the host sees it: which are inside, a bit each, and what each row will emit.
+ *
+ * A closed lattice has a rim: one more layer of samples on every side, none of them inside, that stands where the
+ * outermost samples do. So its places are those of the samples plus `rim`, and every crossed edge has its four cells.
+ *
+ * Edges belong to the row of samples (along i) that they start in. Vertices are numbered row by row, in a row those on
+ * edges along i first, then j, then k; after all of these come the vertices in cells, in the order of their cells. */
+#ifndef HEWN_SRC_ISO_LATTICE_H
+#define HEWN_SRC_ISO_LATTICE_H
+
+#include "hewn/volume_extract.h"
+#include "iso/threshold.h"
+
+/* Vertices keep this part of an edge away from its ends, at least. */
+#define HEWN_LATTICE_MARGIN 0x1p-14
+
+/* What a row of samples has, and after the sums where its share begins. */
+typedef struct hewn_lattice_row {
+    uint32_t vertices[3]; /* on edges along i, j and k */
+    uint32_t centres;     /* in the cells of the row, which start at its samples */
+    uint64_t triangles;
+} hewn_lattice_row;
+
+typedef struct hewn_lattice {
+    const hewn_volume *volume;
+    uint64_t first;   /* sample (0, 0, 0) of the frame */
+    uint32_t rim;     /* 1 where it is closed, else 0 */
+    uint32_t dims[3]; /* with the rim */
+    hewn_threshold threshold;
+    /* The trilinear field that is meshed: rise × (sample - level), below 0 outside where `above`, inside otherwise. 0
+     * counts as just not below. */
+    double level, rise;
+    bool above;
+    double margin;
+    double place[12]; /* to the mesh's space, row by row */
+    double turn[9];   /* takes the gradient of samples to an outward direction there */
+    bool mirrors;
+    uint32_t words;         /* a row has so many words of 64 bits, and one of 0 follows the last row */
+    uint64_t *inside;       /* bit i % 64 of word i / 64 */
+    hewn_lattice_row *rows; /* dims[1] × dims[2] */
+    const uint32_t *table;  /* of patches, as in iso/mc33.h */
+    bool flipped;           /* the table's inside is what is not inside here */
+    bool normals;
+    uint64_t vertex_count, centre_count, triangle_count;
+    uint64_t active_cells, decided_cells, cap_vertices;
+} hewn_lattice;
+
+static inline const uint64_t *hewn_lattice_bits(const hewn_lattice *lattice, uint32_t j, uint32_t k)
+{
+    return lattice->inside + ((uint64_t)k * lattice->dims[1] + j) * lattice->words;
+}
+
+static inline hewn_lattice_row *hewn_lattice_row_at(const hewn_lattice *lattice, uint32_t j, uint32_t k)
+{
+    return &lattice->rows[(uint64_t)k * lattice->dims[1] + j];
+}
+
+/* Whether a place along an axis is in the rim. */
+static inline bool hewn_lattice_in_rim(const hewn_lattice *lattice, int axis, uint32_t at)
+{
+    return lattice->rim && (at == 0 || at == lattice->dims[axis] - 1);
+}
+
+/* 64 samples of a row from `word` on, a place further along i. */
+static inline uint64_t hewn_lattice_next(const uint64_t *bits, uint32_t word)
+{
+    return bits[word] >> 1 | bits[word + 1] << 63;
+}
+
+/* Bits of `word` that are below `count` of the row. */
+static inline uint64_t hewn_lattice_mask(uint32_t word, uint32_t count)
+{
+    return count >= 64 * (word + 1) ? ~(uint64_t)0 : count <= 64 * word ? 0 : ~(uint64_t)0 >> (64 - count % 64);
+}
+
+static inline uint32_t hewn_lattice_lowest(uint64_t bits)
+{
+    return (uint32_t)__builtin_ctzll(bits);
+}
+
+/* The four rows of samples around a row of cells. Word number `words` of a row is the first of the next one, so what it
+ * adds at the row's end must be masked. */
+typedef struct hewn_lattice_cells {
+    const uint64_t *bits[4]; /* at (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1) */
+    uint32_t word;
+    uint64_t here[4], next[4];
+    uint64_t active; /* cells of this word that hold surface */
+} hewn_lattice_cells;
+
+static inline hewn_lattice_cells hewn_lattice_cells_at(const hewn_lattice *lattice, uint32_t j, uint32_t k)
+{
+    hewn_lattice_cells cells = {.word = 0};
+    for (uint32_t i = 0; i < 4; i++)
+        cells.bits[i] = hewn_lattice_bits(lattice, j + (i & 1), k + (i >> 1));
+    return cells;
+}
+
+static inline void hewn_lattice_load(const hewn_lattice *lattice, hewn_lattice_cells *cells, uint32_t word)
+{
+    uint64_t any = 0, all = ~(uint64_t)0;
+    cells->word = word;
+    for (int i = 0; i < 4; i++) {
+        cells->here[i] = cells->bits[i][word];
+        cells->next[i] = hewn_lattice_next(cells->bits[i], word);
+        any |= cells->here[i] | cells->next[i];
+        all &= cells->here[i] & cells->next[i];
+    }
+    cells->active = any & ~all & hewn_lattice_mask(word, lattice->dims[0] - 1);
+}
+
+/* Bit c is set where corner c of a cell of the word is inside. */
+static inline uint32_t hewn_lattice_pattern(const hewn_lattice_cells *cells, uint32_t bit)
+{
+    uint32_t pattern = 0;
+    for (int i = 0; i < 4; i++)
+        pattern |= (uint32_t)(cells->here[i] >> bit & 1) << 2 * i | (uint32_t)(cells->next[i] >> bit & 1)
+                                                                        << (2 * i + 1);
+    return pattern;
+}
+
+/* The place in the table of the patch for the cell at (i, j, k) with this pattern. */
+uint32_t hewn_lattice_patch(const hewn_lattice *lattice, uint32_t pattern, uint32_t i, uint32_t j, uint32_t k);
+
+/* The stages in order. Signs of all samples; counts, and from them the places of all that rows emit (HEWN_LIMIT);
+ * vertices on edges; vertices in cells and triangles. */
+void hewn_lattice_find_signs(hewn_lattice *lattice);
+hewn_result hewn_lattice_count(hewn_lattice *lattice, hewn_error *error);
+void hewn_lattice_emit_vertices(const hewn_lattice *lattice, hewn_triangles *out);
+void hewn_lattice_emit_triangles(const hewn_lattice *lattice, hewn_triangles *out);
+
+#endif

@@ -1,0 +1,141 @@
+/* What each row will emit, and where. */
+#include "base/error.h"
+#include "iso/decide.h"
+#include "iso/lattice_sample.h"
+
+/* --- decisions ---------------------------------------------------------------------------------------------------- */
+
+/* A cell beside the rim is cut as its inner face is: all of it that is in the rim is as good as 0. */
+static bool touches_rim(const hewn_lattice *lattice, uint32_t i, uint32_t j, uint32_t k)
+{
+    const uint32_t at[3] = {i, j, k};
+    for (int axis = 0; axis < 3; axis++)
+        if (hewn_lattice_in_rim(lattice, axis, at[axis]) || hewn_lattice_in_rim(lattice, axis, at[axis] + 1))
+            return true;
+    return false;
+}
+
+uint32_t hewn_lattice_patch(const hewn_lattice *lattice, uint32_t pattern, uint32_t i, uint32_t j, uint32_t k)
+{
+    uint32_t head = lattice->table[lattice->flipped ? pattern ^ 255u : pattern];
+    if (!(head & HEWN_MC33_DECIDES))
+        return head & 0xFFFF;
+    const hewn_volume *volume = lattice->volume;
+    double values[8];
+    for (uint32_t c = 0; c < 8; c++) {
+        uint32_t at[3] = {i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)};
+        bool rim = hewn_lattice_in_rim(lattice, 0, at[0]) || hewn_lattice_in_rim(lattice, 1, at[1]) ||
+                   hewn_lattice_in_rim(lattice, 2, at[2]);
+        uint64_t row = (uint64_t)(at[2] - lattice->rim) * volume->dims[1] + (at[1] - lattice->rim);
+        uint64_t number = lattice->first + row * volume->dims[0] + (at[0] - lattice->rim);
+        values[c] = rim ? 0 : hewn_lattice_signed(lattice, number, pattern >> c & 1, volume->type);
+    }
+    /* What the table calls inside is what is below 0: the values' own sign says so, but for those that became 0. */
+    uint32_t faces = hewn_decide_faces(values, head >> 16 & 63);
+    hewn_mc33_join join = touches_rim(lattice, i, j, k) ? HEWN_MC33_NO_JOIN : hewn_decide_join(values);
+    return lattice->table[(head & 0xFFFF) + HEWN_MC33_JOINS * faces + join];
+}
+
+/* --- counts ------------------------------------------------------------------------------------------------------- */
+
+static uint32_t ones(uint64_t bits)
+{
+    uint32_t count = 0;
+    for (; bits; bits &= bits - 1)
+        count++;
+    return count;
+}
+
+static void count_edges(const hewn_lattice *lattice, uint32_t j, uint32_t k, hewn_lattice_row *row)
+{
+    const uint64_t *here = hewn_lattice_bits(lattice, j, k);
+    const uint64_t *beside = j + 1 < lattice->dims[1] ? hewn_lattice_bits(lattice, j + 1, k) : here;
+    const uint64_t *above = k + 1 < lattice->dims[2] ? hewn_lattice_bits(lattice, j, k + 1) : here;
+    for (uint32_t word = 0; word < lattice->words; word++) {
+        uint64_t along = (here[word] ^ hewn_lattice_next(here, word)) & hewn_lattice_mask(word, lattice->dims[0] - 1);
+        row->vertices[0] += ones(along);
+        row->vertices[1] += ones(here[word] ^ beside[word]);
+        row->vertices[2] += ones(here[word] ^ above[word]);
+    }
+}
+
+typedef struct cell_counts {
+    uint64_t active, decided;
+} cell_counts;
+
+static cell_counts count_cells(const hewn_lattice *lattice, uint32_t j, uint32_t k, hewn_lattice_row *row)
+{
+    cell_counts counts = {0};
+    hewn_lattice_cells cells = hewn_lattice_cells_at(lattice, j, k);
+    for (uint32_t word = 0; word < lattice->words; word++) {
+        hewn_lattice_load(lattice, &cells, word);
+        for (uint64_t rest = cells.active; rest; rest &= rest - 1) {
+            uint32_t bit = hewn_lattice_lowest(rest), pattern = hewn_lattice_pattern(&cells, bit);
+            uint32_t head = lattice->table[hewn_lattice_patch(lattice, pattern, 64 * word + bit, j, k)];
+            row->triangles += head & 255;
+            row->centres += head >> 8;
+            counts.active++;
+            counts.decided += lattice->table[lattice->flipped ? pattern ^ 255u : pattern] >> 31;
+        }
+    }
+    return counts;
+}
+
+/* Vertices of the rim lie on edges between it and the outermost samples, so on all that start or end in it. */
+static uint64_t cap_vertices(const hewn_lattice *lattice, uint32_t j, uint32_t k, const hewn_lattice_row *row)
+{
+    const uint64_t *here = hewn_lattice_bits(lattice, j, k);
+    uint32_t last = lattice->dims[0] - 2;
+    uint64_t count = (here[0] >> 1 & 1) + (here[last / 64] >> last % 64 & 1); /* the ends of the row */
+    bool beside = hewn_lattice_in_rim(lattice, 1, j) || hewn_lattice_in_rim(lattice, 1, j + 1);
+    bool above = hewn_lattice_in_rim(lattice, 2, k) || hewn_lattice_in_rim(lattice, 2, k + 1);
+    return count + (beside ? row->vertices[1] : 0) + (above ? row->vertices[2] : 0);
+}
+
+/* Turns counts into where each row's share begins. */
+static void sum_up(hewn_lattice *lattice)
+{
+    uint64_t vertices = 0, centres = 0, triangles = 0, rows = (uint64_t)lattice->dims[1] * lattice->dims[2];
+    for (uint64_t i = 0; i < rows; i++) {
+        hewn_lattice_row *row = &lattice->rows[i], count = *row;
+        for (int axis = 0; axis < 3; axis++) {
+            row->vertices[axis] = (uint32_t)vertices;
+            vertices += count.vertices[axis];
+        }
+        row->centres = (uint32_t)centres;
+        row->triangles = triangles;
+        centres += count.centres;
+        triangles += count.triangles;
+    }
+    lattice->vertex_count = vertices;
+    lattice->centre_count = centres;
+    lattice->triangle_count = triangles;
+}
+
+hewn_result hewn_lattice_count(hewn_lattice *lattice, hewn_error *error)
+{
+    uint64_t active = 0, decided = 0, caps = 0;
+#pragma omp parallel for schedule(dynamic, 4) reduction(+ : active, decided, caps) if (lattice->dims[2] > 8)
+    for (uint32_t k = 0; k < lattice->dims[2]; k++) {
+        for (uint32_t j = 0; j < lattice->dims[1]; j++) {
+            hewn_lattice_row *row = hewn_lattice_row_at(lattice, j, k);
+            *row = (hewn_lattice_row){0};
+            count_edges(lattice, j, k, row);
+            if (lattice->rim)
+                caps += cap_vertices(lattice, j, k, row);
+            if (j + 1 == lattice->dims[1] || k + 1 == lattice->dims[2])
+                continue;
+            cell_counts counts = count_cells(lattice, j, k, row);
+            active += counts.active;
+            decided += counts.decided;
+        }
+    }
+    sum_up(lattice);
+    lattice->active_cells = active;
+    lattice->decided_cells = decided;
+    lattice->cap_vertices = caps;
+    if (lattice->vertex_count + lattice->centre_count >= UINT32_MAX || lattice->triangle_count > UINT64_MAX / 64)
+        return hewn_fail(error, HEWN_LIMIT, "the surface needs %llu vertices, more than indices can name",
+                         (unsigned long long)(lattice->vertex_count + lattice->centre_count));
+    return HEWN_OK;
+}

@@ -1,0 +1,62 @@
+/* Which samples are inside, a bit each. All samples are read once, in order, and compared as they are: this is as fast
+ * as memory gives them, which finding the least and greatest of bricks first would not be. What follows looks at 64
+ * cells at once, and at those only that hold surface. */
+#include <string.h>
+
+#include "base/alloc.h"
+#include "iso/lattice.h"
+
+enum { CHUNK = 4096 }; /* samples that are compared at once: a multiple of 64 */
+
+/* Eight bytes that are 0 or 1 become eight bits: the product moves byte i from bit 8 i to bit 56 + i, and no two of its
+ * terms meet. */
+static uint64_t pack_eight(const uint8_t *bytes)
+{
+    uint64_t eight = 0;
+    for (int i = 0; i < 8; i++)
+        eight |= (uint64_t)bytes[i] << 8 * i; /* one load where memory has this order */
+    return eight * 0x0102040810204080u >> 56;
+}
+
+static uint64_t pack_word(const uint8_t bytes[64])
+{
+    uint64_t word = 0;
+    for (int i = 0; i < 8; i++)
+        word |= pack_eight(bytes + 8 * i) << 8 * i;
+    return word;
+}
+
+/* A row of samples in chunks; each begins at a word, so the first has a sample less where there is a rim before it. */
+static void find_row(const hewn_lattice *lattice, uint64_t from, uint64_t *to)
+{
+    uint8_t bytes[CHUNK];
+    uint32_t count = lattice->volume->dims[0], at = 0, lead = lattice->rim, word = 0;
+    while (word < lattice->words) {
+        uint32_t room = CHUNK - lead, take = count - at < room ? count - at : room;
+        uint32_t used = lead + take, words = lattice->words - word < CHUNK / 64 ? lattice->words - word : CHUNK / 64;
+        bytes[0] = 0;
+        hewn_threshold_apply(&lattice->threshold, lattice->volume, from + at, take, bytes + lead);
+        memset(bytes + used, 0, 64 * words - used);
+        for (uint32_t i = 0; i < words; i++)
+            to[word + i] = pack_word(bytes + 64 * i);
+        word += words;
+        at += take;
+        lead = 0;
+    }
+}
+
+void hewn_lattice_find_signs(hewn_lattice *lattice)
+{
+    uint64_t rows = (uint64_t)lattice->dims[1] * lattice->dims[2];
+#pragma omp parallel for schedule(static) if (rows > 64)
+    for (uint64_t row = 0; row < rows; row++) {
+        uint32_t j = (uint32_t)(row % lattice->dims[1]), k = (uint32_t)(row / lattice->dims[1]);
+        uint64_t *to = lattice->inside + row * lattice->words;
+        uint64_t source = (uint64_t)(k - lattice->rim) * lattice->volume->dims[1] + (j - lattice->rim);
+        if (hewn_lattice_in_rim(lattice, 1, j) || hewn_lattice_in_rim(lattice, 2, k))
+            memset(to, 0, lattice->words * sizeof *to);
+        else
+            find_row(lattice, lattice->first + source * lattice->volume->dims[0], to);
+    }
+    lattice->inside[rows * lattice->words] = 0;
+}

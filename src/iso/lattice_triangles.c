@@ -1,0 +1,134 @@
+/* Triangles of cells, and the vertices that lie in cells. */
+#include <math.h>
+
+#include "iso/lattice.h"
+#include "iso/patch.h"
+
+/* The row of cells that is being emitted: how many vertices on edges of each of its rows of samples lie before the cell
+ * at hand. Whoever has a crossed edge is active, so each crossed edge is passed. */
+typedef struct cell_row {
+    const hewn_lattice *lattice;
+    hewn_triangles *out;
+    uint32_t along[4];   /* edges along i, of rows (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1) */
+    uint32_t beside[2];  /* along j, of rows (j, k), (j, k + 1) */
+    uint32_t upright[2]; /* along k, of rows (j, k), (j + 1, k) */
+    uint32_t centre;
+    uint64_t triangle;
+} cell_row;
+
+static cell_row begin_row(const hewn_lattice *lattice, hewn_triangles *out, uint32_t j, uint32_t k)
+{
+    cell_row row = {.lattice = lattice, .out = out};
+    for (uint32_t i = 0; i < 4; i++) {
+        const hewn_lattice_row *begin = hewn_lattice_row_at(lattice, j + (i & 1), k + (i >> 1));
+        row.along[i] = begin->vertices[0];
+        if ((i & 1) == 0)
+            row.beside[i >> 1] = begin->vertices[1];
+        if (i < 2)
+            row.upright[i] = begin->vertices[2];
+    }
+    const hewn_lattice_row *own = hewn_lattice_row_at(lattice, j, k);
+    row.centre = (uint32_t)lattice->vertex_count + own->centres;
+    row.triangle = own->triangles;
+    return row;
+}
+
+/* The vertices on the edges of a cell, as iso/cube.h numbers them; what is not crossed has some other number. */
+static void name_edges(cell_row *row, uint32_t pattern, uint32_t names[16])
+{
+    uint32_t ahead = pattern ^ pattern >> 2, over = pattern ^ pattern >> 4, along = pattern ^ pattern >> 1;
+    for (uint32_t i = 0; i < 4; i++) {
+        names[i] = row->along[i];
+        row->along[i] += along >> 2 * i & 1;
+    }
+    for (uint32_t i = 0; i < 2; i++) {
+        names[4 + 2 * i] = row->beside[i];
+        row->beside[i] += ahead >> 4 * i & 1;
+        names[5 + 2 * i] = row->beside[i];
+        names[8 + 2 * i] = row->upright[i];
+        row->upright[i] += over >> 2 * i & 1;
+        names[9 + 2 * i] = row->upright[i];
+    }
+}
+
+/* --- vertices in cells -------------------------------------------------------------------------------------------- */
+
+static bool in_face(uint32_t edge, uint32_t face)
+{
+    uint32_t axis = face >> 1, along = edge >> 2;
+    uint32_t place = axis == (along == 0 ? 1u : 0u) ? edge & 1 : edge >> 1 & 1;
+    return axis != along && place == (face & 1);
+}
+
+/* The mean of crossings, halfway from those in a face where `centre` names one (iso/patch.h). */
+static void place_centre(const cell_row *row, const uint32_t names[16], uint32_t centre, uint32_t vertex)
+{
+    const hewn_triangles *out = row->out;
+    uint32_t face = centre >> 12;
+    double sum[3] = {0}, near[3] = {0}, normal[3] = {0}, count = 0, near_count = 0, size = 0;
+    for (uint32_t edge = 0; edge < 12; edge++) {
+        if (!(centre >> edge & 1))
+            continue;
+        const uint64_t at = 3 * (uint64_t)names[edge];
+        bool is_near = face != 0 && in_face(edge, face - 1);
+        for (int axis = 0; axis < 3; axis++) {
+            double position = (double)out->positions[at + (uint64_t)axis];
+            sum[axis] += position;
+            near[axis] += is_near ? position : 0;
+            normal[axis] += row->lattice->normals ? (double)out->normals[at + (uint64_t)axis] : 0;
+        }
+        count++;
+        near_count += is_near;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        size += normal[axis] * normal[axis];
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        double mean = sum[axis] / count;
+        out->positions[3 * (uint64_t)vertex + axis] =
+            (float)(near_count > 0 ? (mean + near[axis] / near_count) / 2 : mean);
+        if (row->lattice->normals)
+            out->normals[3 * (uint64_t)vertex + axis] = size > 0 ? (float)(normal[axis] / sqrt(size)) : axis == 2;
+    }
+}
+
+/* --- cells -------------------------------------------------------------------------------------------------------- */
+
+static void cut_cell(cell_row *row, uint32_t pattern, const uint32_t *record, bool turn)
+{
+    uint32_t names[16] = {0};
+    name_edges(row, pattern, names);
+    uint32_t triangles = record[0] & 255, centres = record[0] >> 8;
+    for (uint32_t i = 0; i < centres; i++) {
+        place_centre(row, names, record[1 + i / 2] >> 16 * (i % 2) & 0xFFFF, row->centre);
+        names[HEWN_PATCH_FIRST_CENTRE + i] = row->centre++;
+    }
+    const uint32_t *words = record + 1 + (centres + 1) / 2;
+    uint32_t *to = row->out->indices + 3 * row->triangle;
+    for (uint32_t i = 0; i < triangles; i++, to += 3) {
+        uint32_t word = words[i / 2] >> 16 * (i % 2);
+        to[0] = names[word & 15];
+        to[turn ? 2 : 1] = names[word >> 4 & 15];
+        to[turn ? 1 : 2] = names[word >> 8 & 15];
+    }
+    row->triangle += triangles;
+}
+
+void hewn_lattice_emit_triangles(const hewn_lattice *lattice, hewn_triangles *out)
+{
+    bool turn = lattice->flipped != lattice->mirrors;
+#pragma omp parallel for schedule(dynamic, 4) if (lattice->dims[2] > 8)
+    for (uint32_t k = 0; k < lattice->dims[2] - 1; k++) {
+        for (uint32_t j = 0; j + 1 < lattice->dims[1]; j++) {
+            cell_row row = begin_row(lattice, out, j, k);
+            hewn_lattice_cells cells = hewn_lattice_cells_at(lattice, j, k);
+            for (uint32_t word = 0; word < lattice->words; word++) {
+                hewn_lattice_load(lattice, &cells, word);
+                for (uint64_t rest = cells.active; rest; rest &= rest - 1) {
+                    uint32_t bit = hewn_lattice_lowest(rest), pattern = hewn_lattice_pattern(&cells, bit);
+                    uint32_t place = hewn_lattice_patch(lattice, pattern, 64 * word + bit, j, k);
+                    cut_cell(&row, pattern, lattice->table + place, turn);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,227 @@
+/* One extraction from a volume, from beginning to end. */
+#include "hewn/volume_extract.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "iso/lattice.h"
+#include "iso/marching_cubes.h"
+#include "iso/mc33.h"
+
+/* The coarsest that floats may be: as a part of a voxel. */
+#define MOST_MARGIN 0x1p-4
+
+typedef struct extraction {
+    const hewn_volume_extract_desc *desc;
+    hewn_lattice lattice;
+    hewn_mc33_table table;
+    hewn_volume_extract_stats stats;
+    double begin, stage;
+} extraction;
+
+static hewn_result end_stage(extraction *run, const char *name, double share, hewn_error *error)
+{
+    double now = hewn_clock_now() - run->begin;
+    run->stats.stages[run->stats.stage_count++] = (hewn_extract_stage){name, run->stage, now};
+    run->stage = now;
+    return hewn_progress_report(run->desc->progress, "extract", share, error);
+}
+
+/* --- the place ---------------------------------------------------------------------------------------------------- */
+
+/* The inverse of the 3 x 3 part; false where it is singular. */
+static bool invert(const double m[12], double inverse[9], double *determinant)
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+            inverse[3 * i + j] = m[4 * a + c] * m[4 * b + d] - m[4 * a + d] * m[4 * b + c];
+        }
+    *determinant = m[0] * inverse[0] + m[1] * inverse[3] + m[2] * inverse[6];
+    bool good = isfinite(*determinant) && *determinant != 0;
+    for (int i = 0; i < 9; i++) {
+        inverse[i] /= *determinant;
+        good = good && isfinite(inverse[i]);
+    }
+    return good;
+}
+
+/* How far vertices keep from grid points: where floats are coarse at the farthest corner, so far that any two vertices
+ * differ by more than rounding takes from them. */
+static double find_margin(const hewn_lattice *lattice, const double inverse[9])
+{
+    double most = 0, sum = 0;
+    int exponent;
+    for (int c = 0; c < 8; c++)
+        for (int i = 0; i < 3; i++) {
+            const double *row = lattice->place + (ptrdiff_t)4 * i;
+            double at = row[3];
+            for (int axis = 0; axis < 3; axis++)
+                at += (c >> axis & 1) * row[axis] * (double)(lattice->volume->dims[axis] - 1);
+            most = fmax(most, fabs(at));
+        }
+    (void)frexp(most, &exponent);
+    for (int i = 0; i < 9; i++)
+        sum += inverse[i] * inverse[i];
+    return fmax(HEWN_LATTICE_MARGIN, 2 * ldexp(1, exponent - 24) * sqrt(sum));
+}
+
+static hewn_result set_place(hewn_lattice *lattice, const double *place, hewn_error *error)
+{
+    double inverse[9], determinant;
+    const double *from = place ? place : lattice->volume->to_world;
+    for (int i = 0; i < 12; i++) {
+        lattice->place[i] = from[i];
+        if (!isfinite(from[i]))
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the place of the samples is not finite");
+    }
+    if (!invert(lattice->place, inverse, &determinant))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the place of the samples is singular");
+    lattice->mirrors = determinant < 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            lattice->turn[3 * i + j] = lattice->above ? -inverse[3 * j + i] : inverse[3 * j + i];
+    lattice->margin = find_margin(lattice, inverse);
+    if (!(lattice->margin <= MOST_MARGIN))
+        return hewn_fail(error, HEWN_BAD_INPUT,
+                         "the volume is so far from the origin that float positions cannot tell its vertices apart");
+    return HEWN_OK;
+}
+
+/* --- before any sample is looked at ------------------------------------------------------------------------------- */
+
+/* Marching cubes' patches as records of the other table: they have no vertices in cells, and nothing to decide. */
+static hewn_result take_marching_cubes(hewn_mc33_table *out, hewn_error *error)
+{
+    hewn_mc_table table;
+    hewn_mc_table_derive(&table);
+    *out = (hewn_mc33_table){.words = hewn_alloc(256 + 256 * HEWN_MC_ENTRY_WORDS, sizeof *out->words)};
+    if (!out->words)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a table of configurations");
+    for (uint32_t pattern = 0; pattern < 256; pattern++)
+        out->words[pattern] = 256 + HEWN_MC_ENTRY_WORDS * pattern;
+    memcpy(out->words + 256, table.words, sizeof table.words);
+    out->count = 256 + 256 * HEWN_MC_ENTRY_WORDS;
+    return HEWN_OK;
+}
+
+static hewn_result check(const hewn_volume *volume, const hewn_volume_extract_desc *desc, hewn_method method,
+                         hewn_error *error)
+{
+    if (desc->frame >= volume->frame_count)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no frame %llu; the volume has %llu, counted from 0",
+                         (unsigned long long)desc->frame, (unsigned long long)volume->frame_count);
+    if (!isfinite(desc->iso))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "an iso value of %g makes no sense", desc->iso);
+    if (method != HEWN_METHOD_MC33 && method != HEWN_METHOD_MARCHING_CUBES)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33 or mc, not by %s",
+                         hewn_method_name(method) ? hewn_method_name(method) : "another method");
+    return HEWN_OK;
+}
+
+static void set_field(hewn_lattice *lattice, const hewn_volume_extract_desc *desc)
+{
+    const hewn_volume *volume = lattice->volume;
+    bool below = desc->inside == HEWN_INSIDE_BELOW || (desc->inside == HEWN_INSIDE_DEFAULT && volume->level_set);
+    lattice->above = !below;
+    lattice->threshold = hewn_threshold_find(volume, desc->iso, below);
+    lattice->level = (desc->iso - volume->intercept) / volume->slope;
+    lattice->rise = volume->slope < 0 ? -1 : 1;
+    lattice->first = hewn_volume_frame_size(volume) * desc->frame;
+    lattice->normals = !desc->no_normals;
+}
+
+static hewn_result lay(extraction *run, hewn_error *error)
+{
+    hewn_lattice *lattice = &run->lattice;
+    const hewn_volume *volume = lattice->volume;
+    lattice->rim = run->desc->open ? 0 : 1;
+    for (int axis = 0; axis < 3; axis++) {
+        lattice->dims[axis] = volume->dims[axis] + 2 * lattice->rim;
+        run->stats.cells[axis] = volume->dims[axis] - 1;
+        if (volume->dims[axis] > UINT32_MAX - 64)
+            return hewn_fail(error, HEWN_LIMIT, "%u samples along axis %d are too many", volume->dims[axis], axis + 1);
+    }
+    lattice->words = (lattice->dims[0] + 63) / 64;
+    uint64_t rows = (uint64_t)lattice->dims[1] * lattice->dims[2];
+    lattice->inside = hewn_alloc(rows * lattice->words + 1, sizeof *lattice->inside);
+    lattice->rows = hewn_alloc(rows, sizeof *lattice->rows);
+    if (!lattice->inside || !lattice->rows)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the signs of %llu rows of samples",
+                         (unsigned long long)rows);
+    return HEWN_OK;
+}
+
+static hewn_result prepare(extraction *run, hewn_method method, hewn_error *error)
+{
+    hewn_lattice *lattice = &run->lattice;
+    set_field(lattice, run->desc);
+    HEWN_TRY(set_place(lattice, run->desc->place, error));
+    HEWN_TRY(lay(run, error));
+    lattice->flipped = method == HEWN_METHOD_MC33 && lattice->above;
+    hewn_result result = method == HEWN_METHOD_MC33 ? hewn_mc33_table_derive(&run->table, error)
+                                                    : take_marching_cubes(&run->table, error);
+    lattice->table = run->table.words;
+    run->stats.method = method;
+    run->stats.below = !lattice->above;
+    return result;
+}
+
+/* --- the whole ---------------------------------------------------------------------------------------------------- */
+
+static hewn_result allocate(const hewn_lattice *lattice, hewn_triangles *out, hewn_error *error)
+{
+    out->vertex_count = lattice->vertex_count + lattice->centre_count;
+    out->triangle_count = lattice->triangle_count;
+    out->positions = hewn_alloc(out->vertex_count, 3 * sizeof *out->positions);
+    out->normals = lattice->normals ? hewn_alloc(out->vertex_count, 3 * sizeof *out->normals) : NULL;
+    out->indices = hewn_alloc(out->triangle_count, 3 * sizeof *out->indices);
+    if (out->positions && out->indices && (out->normals || !lattice->normals))
+        return HEWN_OK;
+    return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu vertices and %llu triangles",
+                     (unsigned long long)out->vertex_count, (unsigned long long)out->triangle_count);
+}
+
+static hewn_result run_stages(extraction *run, hewn_method method, hewn_triangles *out, hewn_error *error)
+{
+    hewn_lattice *lattice = &run->lattice;
+    HEWN_TRY(hewn_progress_report(run->desc->progress, "extract", 0, error));
+    HEWN_TRY(prepare(run, method, error));
+    hewn_lattice_find_signs(lattice);
+    HEWN_TRY(end_stage(run, "signs", 0.3, error));
+    HEWN_TRY(hewn_lattice_count(lattice, error));
+    run->stats.active_cells = lattice->active_cells;
+    run->stats.decided_cells = lattice->decided_cells;
+    run->stats.cap_vertices = lattice->cap_vertices;
+    HEWN_TRY(end_stage(run, "count", 0.5, error));
+    if (lattice->triangle_count == 0)
+        return hewn_fail(error, HEWN_BAD_INPUT, "there is no surface at the value %g", run->desc->iso);
+    HEWN_TRY(allocate(lattice, out, error));
+    hewn_lattice_emit_vertices(lattice, out);
+    HEWN_TRY(end_stage(run, "vertices", 0.8, error));
+    hewn_lattice_emit_triangles(lattice, out);
+    return end_stage(run, "triangles", 1, error);
+}
+
+hewn_result hewn_volume_extract(const hewn_volume *volume, const hewn_volume_extract_desc *desc, hewn_triangles *out,
+                                hewn_volume_extract_stats *stats, hewn_error *error)
+{
+    extraction run = {.desc = desc, .lattice = {.volume = volume}, .begin = hewn_clock_now()};
+    hewn_method method = desc->method == HEWN_METHOD_DEFAULT ? HEWN_METHOD_MC33 : desc->method;
+    *out = (hewn_triangles){0};
+    hewn_result result = check(volume, desc, method, error);
+    if (result == HEWN_OK)
+        result = run_stages(&run, method, out, error);
+    hewn_free(run.lattice.inside);
+    hewn_free(run.lattice.rows);
+    hewn_mc33_table_destroy(&run.table);
+    if (result != HEWN_OK)
+        hewn_triangles_destroy(out);
+    if (stats)
+        *stats = run.stats;
+    return result;
+}

@@ -1,0 +1,270 @@
+/* From a field's graph to the whole tape: shapes become arithmetic, constants numbers of the steps that use them. */
+#include <float.h>
+#include <math.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "lanes/internal.h"
+
+enum { MOST_STEPS_A_NODE = 24 };
+
+typedef struct builder {
+    hewn_lane_tape *tape; /* places only, no registers yet */
+    uint32_t other_count;
+} builder;
+
+/* As the shaders have numbers. */
+static float rounded(double value)
+{
+    float single = (float)value;
+    return fabsf(single) < FLT_MIN ? 0.0F : single;
+}
+
+static uint32_t put(builder *b, hewn_lane_kind kind, uint32_t a, uint32_t c, float number)
+{
+    uint32_t at = b->tape->count++;
+    hewn_lane_step *step = &b->tape->steps[at];
+    *step = (hewn_lane_step){.kind = (uint8_t)kind, .number = number, .in = {a, c, HEWN_NO_STEP}};
+    step->input_count = (uint8_t)((a != HEWN_NO_STEP) + (c != HEWN_NO_STEP));
+    return at;
+}
+
+static uint32_t one(builder *b, hewn_lane_kind kind, uint32_t a)
+{
+    return put(b, kind, a, HEWN_NO_STEP, 0);
+}
+
+static uint32_t with(builder *b, hewn_lane_kind kind, uint32_t a, double number)
+{
+    return put(b, kind, a, HEWN_NO_STEP, rounded(number));
+}
+
+static uint32_t two(builder *b, hewn_lane_kind kind, uint32_t a, uint32_t c)
+{
+    return put(b, kind, a, c, 0);
+}
+
+static uint32_t number(builder *b, double value)
+{
+    return put(b, HEWN_LANE_NUMBER, HEWN_NO_STEP, HEWN_NO_STEP, rounded(value));
+}
+
+/* --- shapes, step by step as in shaders/field/point.glsl ------------------------------------------------------------
+ */
+
+static uint32_t square_sum(builder *b, const uint32_t *in, int count)
+{
+    uint32_t sum = one(b, HEWN_LANE_SQUARE, in[0]);
+    for (int i = 1; i < count; i++)
+        sum = two(b, HEWN_LANE_ADD, sum, one(b, HEWN_LANE_SQUARE, in[i]));
+    return one(b, HEWN_LANE_SQRT, sum);
+}
+
+static uint32_t length2(builder *b, uint32_t x, uint32_t y)
+{
+    return square_sum(b, (uint32_t[]){x, y}, 2);
+}
+
+static uint32_t positive(builder *b, uint32_t a)
+{
+    return with(b, HEWN_LANE_FLOOR_AT, a, 0);
+}
+
+static uint32_t over(builder *b, uint32_t a, double half)
+{
+    return with(b, HEWN_LANE_PLUS, one(b, HEWN_LANE_ABS, a), -half);
+}
+
+static uint32_t box(builder *b, const double *half, const uint32_t *in)
+{
+    uint32_t past[3], outside[3];
+    for (int i = 0; i < 3; i++) {
+        past[i] = over(b, in[i], half[i]);
+        outside[i] = positive(b, past[i]);
+    }
+    uint32_t most = two(b, HEWN_LANE_MAX, two(b, HEWN_LANE_MAX, past[0], past[1]), past[2]);
+    return two(b, HEWN_LANE_ADD, square_sum(b, outside, 3), with(b, HEWN_LANE_CEIL_AT, most, 0));
+}
+
+static uint32_t cylinder(builder *b, const double *p, const uint32_t *in)
+{
+    uint32_t x = with(b, HEWN_LANE_PLUS, length2(b, in[0], in[2]), -p[0]), y = over(b, in[1], p[1]);
+    uint32_t outside = length2(b, positive(b, x), positive(b, y));
+    return two(b, HEWN_LANE_ADD, outside, with(b, HEWN_LANE_CEIL_AT, two(b, HEWN_LANE_MAX, x, y), 0));
+}
+
+/* Terms with a factor of zero are left out, as they are in shaders. */
+static uint32_t affine(builder *b, const double *factors, double last, const uint32_t *in)
+{
+    uint32_t sum = HEWN_NO_STEP;
+    for (int i = 0; i < 3; i++) {
+        float factor = rounded(factors[i]);
+        if (factor == 0)
+            continue;
+        uint32_t term = factor == 1 ? in[i] : with(b, HEWN_LANE_TIMES, in[i], factors[i]);
+        sum = sum == HEWN_NO_STEP ? term : two(b, HEWN_LANE_ADD, sum, term);
+    }
+    return sum == HEWN_NO_STEP ? number(b, last) : with(b, HEWN_LANE_PLUS, sum, last);
+}
+
+/* --- arithmetic ----------------------------------------------------------------------------------------------------
+ */
+
+static bool is_number(const builder *b, uint32_t step)
+{
+    return b->tape->steps[step].kind == HEWN_LANE_NUMBER;
+}
+
+static uint32_t sum(builder *b, uint32_t a, uint32_t c, hewn_lane_kind with_number, hewn_lane_kind otherwise)
+{
+    if (is_number(b, a)) {
+        uint32_t held = a;
+        a = c;
+        c = held;
+    }
+    return is_number(b, c) ? put(b, with_number, a, HEWN_NO_STEP, b->tape->steps[c].number) : two(b, otherwise, a, c);
+}
+
+static uint32_t difference(builder *b, uint32_t a, uint32_t c)
+{
+    if (is_number(b, c))
+        return put(b, HEWN_LANE_PLUS, a, HEWN_NO_STEP, -b->tape->steps[c].number);
+    if (is_number(b, a))
+        return put(b, HEWN_LANE_LESS, c, HEWN_NO_STEP, b->tape->steps[a].number);
+    return two(b, HEWN_LANE_SUB, a, c);
+}
+
+static uint32_t other(builder *b, const hewn_node_data *node, const uint32_t *in)
+{
+    bool blend = node->op >= HEWN_OP_BLEND_QUADRATIC && node->op <= HEWN_OP_BLEND_EXPONENTIAL;
+    uint32_t at = put(b, blend ? HEWN_LANE_OTHER_BLEND : HEWN_LANE_OTHER, HEWN_NO_STEP, HEWN_NO_STEP, 0);
+    hewn_lane_step *step = &b->tape->steps[at];
+    step->input_count = hewn_op_infos[node->op].operands;
+    for (uint32_t i = 0; i < step->input_count; i++)
+        step->in[i] = in[i];
+    step->number = (float)node->parameter[0];
+    step->node = b->other_count;
+    b->tape->others[b->other_count++] = *node;
+    return at;
+}
+
+static uint32_t shape(builder *b, const hewn_node_data *node, const uint32_t *in)
+{
+    const double *p = node->parameter;
+    switch (node->op) {
+    case HEWN_OP_AFFINE: return affine(b, p, p[3], in);
+    case HEWN_OP_PLANE: return affine(b, p, -p[3], in);
+    case HEWN_OP_SPHERE: return with(b, HEWN_LANE_PLUS, square_sum(b, in, 3), -p[0]);
+    case HEWN_OP_BOX: return box(b, p, in);
+    case HEWN_OP_ROUNDED_BOX: return with(b, HEWN_LANE_PLUS, box(b, p, in), -p[3]);
+    case HEWN_OP_TORUS: {
+        uint32_t ring = with(b, HEWN_LANE_PLUS, length2(b, in[0], in[2]), -p[0]);
+        return with(b, HEWN_LANE_PLUS, length2(b, ring, in[1]), -p[1]);
+    }
+    case HEWN_OP_CYLINDER: return cylinder(b, p, in);
+    case HEWN_OP_CAPSULE: {
+        uint32_t parts[3] = {in[0], positive(b, over(b, in[1], p[1])), in[2]};
+        return with(b, HEWN_LANE_PLUS, square_sum(b, parts, 3), -p[0]);
+    }
+    default: return other(b, node, in);
+    }
+}
+
+static uint32_t add_node(builder *b, const hewn_node_data *node, const uint32_t *in)
+{
+    switch (node->op) {
+    case HEWN_OP_X: return put(b, HEWN_LANE_X, HEWN_NO_STEP, HEWN_NO_STEP, 0);
+    case HEWN_OP_Y: return put(b, HEWN_LANE_Y, HEWN_NO_STEP, HEWN_NO_STEP, 0);
+    case HEWN_OP_Z: return put(b, HEWN_LANE_Z, HEWN_NO_STEP, HEWN_NO_STEP, 0);
+    case HEWN_OP_CONSTANT: return number(b, node->parameter[0]);
+    case HEWN_OP_NEG: return one(b, HEWN_LANE_NEG, in[0]);
+    case HEWN_OP_ABS: return one(b, HEWN_LANE_ABS, in[0]);
+    case HEWN_OP_SQRT: return one(b, HEWN_LANE_SQRT, in[0]);
+    case HEWN_OP_SQUARE: return one(b, HEWN_LANE_SQUARE, in[0]);
+    case HEWN_OP_ADD: return sum(b, in[0], in[1], HEWN_LANE_PLUS, HEWN_LANE_ADD);
+    case HEWN_OP_MUL: return sum(b, in[0], in[1], HEWN_LANE_TIMES, HEWN_LANE_MUL);
+    case HEWN_OP_MIN: return sum(b, in[0], in[1], HEWN_LANE_CEIL_AT, HEWN_LANE_MIN);
+    case HEWN_OP_MAX: return sum(b, in[0], in[1], HEWN_LANE_FLOOR_AT, HEWN_LANE_MAX);
+    case HEWN_OP_SUB: return difference(b, in[0], in[1]);
+    case HEWN_OP_BLEND_QUADRATIC: {
+        uint32_t at = put(b, HEWN_LANE_BLEND, in[0], in[1], rounded(node->parameter[0]));
+        b->tape->steps[at].inverse = rounded(1 / node->parameter[0]);
+        return at;
+    }
+    default: return shape(b, node, in);
+    }
+}
+
+static uint32_t fill(builder *b, const hewn_field *field, const uint32_t *ids, size_t count, uint32_t *places)
+{
+    uint32_t last = HEWN_NO_STEP;
+    for (size_t i = 0; i < count; i++) {
+        const hewn_node_data *node = hewn_field_node(field, ids[i]);
+        uint32_t in[HEWN_MAX_OPERANDS] = {HEWN_NO_STEP, HEWN_NO_STEP, HEWN_NO_STEP};
+        for (int k = 0; k < hewn_op_infos[node->op].operands; k++)
+            in[k] = places[node->operand[k]];
+        last = places[ids[i]] = add_node(b, node, in);
+    }
+    return last;
+}
+
+hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_lane_tape **out, hewn_error *error)
+{
+    *out = NULL;
+    uint32_t *ids = NULL;
+    size_t count = 0;
+    HEWN_TRY(hewn_field_live_nodes(field, root, &ids, &count, error));
+    builder b = {.tape = hewn_alloc(1, sizeof *b.tape + count * MOST_STEPS_A_NODE * sizeof *b.tape->steps)};
+    hewn_node_data *others = hewn_alloc(count, sizeof *others);
+    uint32_t *places = hewn_alloc((size_t)root.id + 1, sizeof *places);
+    hewn_result result = HEWN_OK;
+    if (b.tape && others && places) {
+        *b.tape = (hewn_lane_tape){.others = others};
+        uint32_t last = fill(&b, field, ids, count, places);
+        result = hewn_lane_tape_settle(b.tape, last, out, error);
+    } else {
+        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
+    }
+    if (result == HEWN_OK)
+        (*out)->owns = true;
+    else
+        hewn_free(others);
+    hewn_free(places);
+    hewn_free(ids);
+    hewn_free(b.tape);
+    return result;
+}
+
+void hewn_lane_tape_destroy(hewn_lane_tape **tape)
+{
+    if (*tape && (*tape)->owns)
+        hewn_free((*tape)->others);
+    hewn_free(*tape);
+    *tape = NULL;
+}
+
+/* --- work -----------------------------------------------------------------------------------------------------------
+ */
+
+hewn_result hewn_lane_work_create(const hewn_lane_tape *whole, hewn_lane_work *out, hewn_error *error)
+{
+    enum { ROWS = 4 }; /* a register's value and three derivatives, or two bounds */
+    *out =
+        (hewn_lane_work){.values = hewn_alloc((size_t)(whole->registers + 1) * ROWS * HEWN_LANES, sizeof *out->values),
+                         .choices = hewn_alloc((size_t)(whole->cuts + 1) * HEWN_LANES, sizeof *out->choices),
+                         .scratch = hewn_alloc((size_t)whole->count * 3, sizeof *out->scratch),
+                         .held = hewn_alloc((size_t)whole->registers + 1, sizeof *out->held)};
+    if (out->values && out->choices && out->scratch && out->held)
+        return HEWN_OK;
+    hewn_lane_work_destroy(out);
+    return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory evaluating a field");
+}
+
+void hewn_lane_work_destroy(hewn_lane_work *work)
+{
+    hewn_free(work->values);
+    hewn_free(work->choices);
+    hewn_free(work->scratch);
+    hewn_free(work->held);
+    *work = (hewn_lane_work){0};
+}

@@ -1,0 +1,143 @@
+/* Cutting a tape down: what a choice makes superfluous goes, steps move together, and registers are given out anew from
+ * the last step back, so that a short tape works in little memory. */
+#include "base/alloc.h"
+#include "base/error.h"
+#include "lanes/internal.h"
+
+enum { NO_REGISTER = 0xFFFF };
+
+typedef struct cutting {
+    const hewn_lane_tape *from;
+    const int32_t *choices; /* the box's column, or NULL */
+    uint32_t *same;         /* the step that has a step's value */
+    uint32_t *place;        /* in the new tape, HEWN_NO_STEP: not needed */
+    uint32_t *held;         /* register */
+    uint16_t *free;         /* those given back */
+    uint32_t free_count, registers;
+} cutting;
+
+/* Follows choices to whose value each step has, and marks what the last one needs; returns how many steps that is. */
+static uint32_t mark(cutting *cut, uint32_t last)
+{
+    const hewn_lane_step *steps = cut->from->steps;
+    for (uint32_t i = 0, choice = 0; i <= last; i++) {
+        cut->same[i] = i;
+        cut->place[i] = HEWN_NO_STEP;
+        cut->held[i] = NO_REGISTER;
+        if (!cut->choices || !hewn_lane_can_cut(&steps[i]))
+            continue;
+        int32_t keep = cut->choices[(size_t)choice++ * HEWN_LANES];
+        if (keep == HEWN_KEEP_FIRST)
+            cut->same[i] = cut->same[steps[i].in[0]];
+        else if (keep == HEWN_KEEP_SECOND && steps[i].input_count > 1)
+            cut->same[i] = cut->same[steps[i].in[1]];
+        else if (keep == HEWN_KEEP_SECOND)
+            cut->held[i] = HEWN_NO_STEP; /* its number alone */
+    }
+    uint32_t needed = 0;
+    cut->place[cut->same[last]] = 0;
+    for (uint32_t i = last + 1; i-- > 0;) {
+        if (cut->place[i] == HEWN_NO_STEP)
+            continue;
+        needed++;
+        for (uint32_t k = 0; k < steps[i].input_count && cut->held[i] != HEWN_NO_STEP; k++)
+            cut->place[cut->same[steps[i].in[k]]] = 0;
+    }
+    return needed;
+}
+
+static uint32_t copy_steps(cutting *cut, uint32_t last, hewn_lane_tape *to)
+{
+    uint32_t cuts = 0;
+    for (uint32_t i = 0; i <= last; i++) {
+        if (cut->place[i] == HEWN_NO_STEP)
+            continue;
+        cut->place[i] = to->count;
+        hewn_lane_step *step = &to->steps[to->count++];
+        *step = cut->from->steps[i];
+        if (cut->held[i] == HEWN_NO_STEP) {
+            step->kind = HEWN_LANE_NUMBER;
+            step->input_count = 0;
+        }
+        for (uint32_t k = 0; k < step->input_count; k++)
+            step->in[k] = cut->place[cut->same[step->in[k]]];
+        cuts += hewn_lane_can_cut(step);
+    }
+    return cuts;
+}
+
+static uint16_t take(cutting *cut)
+{
+    return cut->free_count > 0 ? cut->free[--cut->free_count] : (uint16_t)cut->registers++;
+}
+
+/* A step's own register is given back after its operands have theirs, so that no step writes what it reads. */
+static bool give_registers(cutting *cut, hewn_lane_tape *to)
+{
+    uint32_t *held = cut->held;
+    for (uint32_t i = 0; i < to->count; i++)
+        held[i] = NO_REGISTER;
+    held[to->count - 1] = take(cut);
+    for (uint32_t i = to->count; i-- > 0;) {
+        hewn_lane_step *step = &to->steps[i];
+        step->out = (uint16_t)held[i];
+        for (uint32_t k = 0; k < step->input_count; k++) {
+            if (held[step->in[k]] == NO_REGISTER)
+                held[step->in[k]] = take(cut);
+            step->from[k] = (uint16_t)held[step->in[k]];
+        }
+        if (cut->registers >= NO_REGISTER)
+            return false;
+        cut->free[cut->free_count++] = step->out;
+    }
+    to->registers = cut->registers;
+    return true;
+}
+
+static hewn_result make(cutting *cut, uint32_t last, uint32_t needed, hewn_lane_tape **out, hewn_error *error)
+{
+    hewn_lane_tape *to = hewn_alloc(1, sizeof *to + needed * sizeof *to->steps);
+    if (!to)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
+    *to = (hewn_lane_tape){.others = cut->from->others};
+    to->cuts = copy_steps(cut, last, to);
+    if (!give_registers(cut, to)) {
+        hewn_free(to);
+        return hewn_fail(error, HEWN_LIMIT, "the field keeps more than 65,534 values at a time");
+    }
+    *out = to;
+    return HEWN_OK;
+}
+
+hewn_result hewn_lane_tape_settle(const hewn_lane_tape *steps, uint32_t last, hewn_lane_tape **out, hewn_error *error)
+{
+    *out = NULL;
+    uint32_t *room = hewn_alloc((size_t)steps->count * 3, sizeof *room);
+    uint16_t *free = hewn_alloc((size_t)steps->count + 1, sizeof *free);
+    hewn_result result = HEWN_OUT_OF_MEMORY;
+    if (room && free) {
+        cutting cut = {.from = steps, .same = room, .free = free};
+        cut.place = room + steps->count;
+        cut.held = room + 2 * (size_t)steps->count;
+        uint32_t needed = mark(&cut, last);
+        result = make(&cut, last, needed, out, error);
+    } else {
+        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
+    }
+    hewn_free(room);
+    hewn_free(free);
+    return result;
+}
+
+hewn_result hewn_lane_tape_cut(const hewn_lane_tape *tape, hewn_lane_work *work, uint32_t lane, hewn_lane_tape **out,
+                               hewn_error *error)
+{
+    *out = NULL;
+    cutting cut = {.from = tape, .choices = work->choices + lane, .same = work->scratch, .free = work->held};
+    cut.place = work->scratch + tape->count;
+    cut.held = work->scratch + 2 * (size_t)tape->count;
+    uint32_t needed = mark(&cut, tape->count - 1);
+    if (needed > tape->count - tape->count / 8)
+        return HEWN_OK;
+    return make(&cut, tape->count - 1, needed, out, error);
+}

@@ -1,0 +1,108 @@
+/* A field as a tape that the host runs over many samples at once, in float, and that interval arithmetic cuts down to
+ * what matters in a box (Keeter 2020, Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces).
+ *
+ * Shapes are taken apart into arithmetic, in the order in which shaders compute them, so values have the bits that a
+ * device gives which rounds every sum, product and root correctly; operations without a kind of their own are computed
+ * in double and rounded. A min, max or blend is dropped only where the arithmetic returns the other operand's bits:
+ * every tape gives the bits of the whole one in its box. Denormals are kept. */
+#ifndef HEWN_SRC_LANES_TAPE_H
+#define HEWN_SRC_LANES_TAPE_H
+
+#include "field/graph.h"
+
+enum {
+    HEWN_LANES = 64,     /* samples or boxes at once; counts are multiples of HEWN_LANE_BLOCK */
+    HEWN_LANE_BLOCK = 8, /* floats of a vector */
+    HEWN_LANE_INPUTS = 3
+};
+
+/* What a step does with registers a, b and c, and its number n. */
+typedef enum hewn_lane_kind {
+    HEWN_LANE_X,
+    HEWN_LANE_Y,
+    HEWN_LANE_Z,
+    HEWN_LANE_NUMBER, /* n */
+    HEWN_LANE_NEG,
+    HEWN_LANE_ABS,
+    HEWN_LANE_SQRT,
+    HEWN_LANE_SQUARE,
+    HEWN_LANE_PLUS,  /* a + n */
+    HEWN_LANE_TIMES, /* a n */
+    HEWN_LANE_LESS,  /* n - a */
+    HEWN_LANE_ADD,
+    HEWN_LANE_SUB,
+    HEWN_LANE_MUL,
+    HEWN_LANE_FLOOR_AT, /* max(a, n); the first of the kinds that can be cut */
+    HEWN_LANE_CEIL_AT,  /* min(a, n) */
+    HEWN_LANE_MIN,
+    HEWN_LANE_MAX,
+    HEWN_LANE_BLEND, /* the quadratic one of size n */
+    HEWN_LANE_OTHER_BLEND,
+    HEWN_LANE_OTHER /* an operation of the field, see hewn_lane_step.node */
+} hewn_lane_kind;
+
+typedef struct hewn_lane_step {
+    uint8_t kind;
+    uint8_t input_count;
+    uint16_t out;                    /* register */
+    uint16_t from[HEWN_LANE_INPUTS]; /* registers */
+    uint32_t in[HEWN_LANE_INPUTS];   /* steps, by their place in the tape */
+    float number;
+    float inverse; /* of a blend's size */
+    uint32_t node; /* of an operation of the field: which of `others` */
+} hewn_lane_step;
+
+typedef struct hewn_lane_tape {
+    uint32_t count;
+    uint32_t registers;
+    uint32_t cuts; /* steps that can be cut */
+    bool owns;     /* `others` is freed with it */
+    hewn_node_data *others;
+    hewn_lane_step steps[]; /* the last one is the field */
+} hewn_lane_tape;
+
+/* The whole field. It reads what it needs, so the field may change or go. HEWN_INVALID_ARGUMENT for a node of no field,
+ * HEWN_LIMIT where the field keeps more than 65,535 values at a time, HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_lane_tape **out, hewn_error *error);
+void hewn_lane_tape_destroy(hewn_lane_tape **tape);
+
+/* What one thread needs to run a tape and all that are cut from it. Zero is the empty one. */
+typedef struct hewn_lane_work {
+    float *values;     /* a row of HEWN_LANES a register and derivative or bound */
+    int32_t *choices;  /* of the last bounds: a row for each step that can be cut */
+    uint32_t *scratch; /* three for each step */
+    uint16_t *held;    /* one for each register */
+} hewn_lane_work;
+
+hewn_result hewn_lane_work_create(const hewn_lane_tape *whole, hewn_lane_work *out, hewn_error *error);
+void hewn_lane_work_destroy(hewn_lane_work *work);
+
+/* Boxes or points, a row a side. */
+typedef struct hewn_lane_boxes {
+    float lo[3][HEWN_LANES], hi[3][HEWN_LANES];
+} hewn_lane_boxes;
+
+typedef struct hewn_lane_points {
+    float at[3][HEWN_LANES];
+} hewn_lane_points;
+
+/* Values at the first `count` points. */
+void hewn_lanes_value(const hewn_lane_tape *tape, hewn_lane_work *work, const hewn_lane_points *points, uint32_t count,
+                      float *values);
+
+/* Values, and derivatives after x, y and z, as hewn_field_gradient() has them; those of operations without a kind of
+ * their own are difference quotients in double. */
+void hewn_lanes_gradient(const hewn_lane_tape *tape, hewn_lane_work *work, const hewn_lane_points *points,
+                         uint32_t count, float *values, float gradients[3][HEWN_LANES]);
+
+/* Bounds of what hewn_lanes_value() gives in each of the first `count` boxes: [-inf, inf] where it may overflow or be
+ * NaN on its way. What can be cut in each is kept for hewn_lane_tape_cut(). */
+void hewn_lanes_bound(const hewn_lane_tape *tape, hewn_lane_work *work, const hewn_lane_boxes *boxes, uint32_t count,
+                      float *lo, float *hi);
+
+/* The tape cut down to what matters in box `lane` of the last bounds, which must be of this tape and known. `*out` is
+ * NULL where that is hardly shorter. Tapes that are cut share what the whole one owns. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_lane_tape_cut(const hewn_lane_tape *tape, hewn_lane_work *work, uint32_t lane, hewn_lane_tape **out,
+                               hewn_error *error);
+
+#endif

@@ -1,0 +1,328 @@
+#include "hewn/volume_job.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "pipeline/paths.h"
+#include "pipeline/report.h"
+
+/* A job under way. */
+typedef struct volume_job {
+    const hewn_volume_job_desc *desc;
+    hewn_volume_report *report;
+    double began, stage;
+    hewn_volume volume;
+    hewn_triangles mesh;
+} volume_job;
+
+static void begin_stage(volume_job *job)
+{
+    job->stage = hewn_clock_now() - job->began;
+}
+
+static void end_stage(volume_job *job, const char *name)
+{
+    hewn_volume_report *report = job->report;
+    if (report->stage_count == sizeof report->stages / sizeof *report->stages)
+        return;
+    hewn_report_stage *stage = &report->stages[report->stage_count++];
+    snprintf(stage->name, sizeof stage->name, "%s", name);
+    stage->begin = job->stage;
+    stage->end = hewn_clock_now() - job->began;
+}
+
+/* --- before any work ---------------------------------------------------------------------------------------------- */
+
+/* GLB is in metres with +Y up; a space has a meaning of its own for axes, so 3MF's +Z is no matter. */
+static hewn_result check_space(const volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    const hewn_unit *metre = hewn_unit_find("m");
+    bool glb = job->report->to == HEWN_MESH_GLB;
+    if (glb && desc->space != HEWN_SPACE_DEFAULT && desc->space != HEWN_SPACE_GLTF)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "GLB files are always in glTF's space, not in %s; .stl, .obj, .ply, .off and .3mf can be",
+                         hewn_space_name(desc->space) ? hewn_space_name(desc->space) : "another");
+    if (glb && desc->to_unit && desc->to_unit != metre)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB is always in metres, not in %s", desc->to_unit->name);
+    if (desc->space == HEWN_SPACE_VOXEL && desc->to_unit)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "in the space of voxels lengths are voxels, not %s",
+                         desc->to_unit->name);
+    if (job->report->to == HEWN_MESH_3MF && desc->to_unit && strcmp(desc->to_unit->name, "km") == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF cannot be in km");
+    return HEWN_OK;
+}
+
+static hewn_result check_method(const hewn_volume_job_desc *desc, hewn_error *error)
+{
+    if (desc->method == HEWN_METHOD_DEFAULT || desc->method == HEWN_METHOD_MC33 ||
+        desc->method == HEWN_METHOD_MARCHING_CUBES)
+        return HEWN_OK;
+    return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33 or mc, not by %s",
+                     hewn_method_name(desc->method) ? hewn_method_name(desc->method) : "another method");
+}
+
+static hewn_result check(volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    if (!desc->input || !desc->output)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a job needs an input and an output");
+    HEWN_TRY(hewn_output_format(desc->output, desc->format, &job->report->to, error));
+    HEWN_TRY(check_space(job, error));
+    HEWN_TRY(check_method(desc, error));
+    if (desc->report && strcmp(desc->report, desc->output) == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
+                         strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
+    HEWN_TRY(hewn_output_check(desc->output, error));
+    return desc->report ? hewn_output_check(desc->report, error) : HEWN_OK;
+}
+
+/* --- reading ------------------------------------------------------------------------------------------------------ */
+
+static hewn_result load(volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    hewn_volume_report *report = job->report;
+    hewn_volume_read_desc read = desc->read;
+    read.progress = desc->progress;
+    begin_stage(job);
+    report->from = read.format != HEWN_VOLUME_UNKNOWN ? read.format : hewn_volume_format_of_file(desc->input);
+    HEWN_TRY(hewn_volume_read(desc->input, &read, &job->volume, error));
+    const hewn_volume *volume = &job->volume;
+    if (desc->frame >= volume->frame_count)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no frame %llu; the volume has %llu, counted from 0",
+                         (unsigned long long)desc->frame, (unsigned long long)volume->frame_count);
+    memcpy(report->dims, volume->dims, sizeof report->dims);
+    report->type = volume->type;
+    report->slope = volume->slope;
+    report->intercept = volume->intercept;
+    report->frame_count = volume->frame_count;
+    report->frame = desc->frame;
+    report->anatomical = volume->anatomical;
+    report->left_handed = hewn_volume_determinant(volume) < 0;
+    report->remark = volume->remark ? hewn_strdup(volume->remark) : NULL;
+    end_stage(job, "load");
+    return HEWN_OK;
+}
+
+/* --- where the mesh shall be -------------------------------------------------------------------------------------- */
+
+/* A volume of a patient without a unit is in millimetres; another one is in what the output is to be in. */
+static hewn_result choose_place(volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    hewn_volume_report *report = job->report;
+    const hewn_unit *unit = desc->unit ? desc->unit : job->volume.unit;
+    report->space = desc->space;
+    if (desc->space == HEWN_SPACE_DEFAULT)
+        report->space = report->to == HEWN_MESH_GLB ? HEWN_SPACE_GLTF
+                        : job->volume.anatomical    ? HEWN_SPACE_RAS
+                                                    : HEWN_SPACE_WORLD;
+    if (report->space == HEWN_SPACE_VOXEL)
+        return hewn_volume_bring(&job->volume, report->space, 1, report->place, error);
+    report->unit_assumed = !unit && (job->volume.anatomical || desc->to_unit || report->space == HEWN_SPACE_GLTF);
+    if (!unit && job->volume.anatomical)
+        unit = hewn_unit_find("mm");
+    const hewn_unit *wanted = desc->to_unit;
+    if (!wanted && report->space == HEWN_SPACE_GLTF)
+        wanted = hewn_unit_find("m");
+    if (!unit)
+        unit = wanted;
+    report->unit_before = unit;
+    report->unit = wanted ? wanted : unit;
+    double scale = 1;
+    if (unit && report->unit != unit)
+        scale = hewn_unit_metres(unit) / hewn_unit_metres(report->unit);
+    return hewn_volume_bring(&job->volume, report->space, scale, report->place, error);
+}
+
+/* --- values ------------------------------------------------------------------------------------------------------- */
+
+/* A number needs no look at the values; the surface tells whether it was a good one. */
+static hewn_result choose_iso(volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    hewn_volume_report *report = job->report;
+    report->iso_chosen = !desc->iso;
+    report->iso = desc->iso               ? *desc->iso
+                  : job->volume.level_set ? (hewn_iso){.kind = HEWN_ISO_NUMBER}
+                                          : (hewn_iso){.kind = HEWN_ISO_OTSU, .threshold = 1, .classes = 2};
+    report->iso_value = report->iso.number;
+    if (report->iso.kind == HEWN_ISO_NUMBER)
+        return HEWN_OK;
+    begin_stage(job);
+    HEWN_TRY(hewn_iso_find(&report->iso, &job->volume, desc->frame, &report->iso_value, error));
+    end_stage(job, "iso");
+    return HEWN_OK;
+}
+
+static hewn_result measure(volume_job *job, hewn_error *error)
+{
+    hewn_volume_report *report = job->report;
+    const hewn_volume *volume = &job->volume;
+    if (report->measured)
+        return HEWN_OK;
+    begin_stage(job);
+    report->range = hewn_volume_find_range(volume, report->frame);
+    report->measured = true;
+    if (report->range.finite_count > 0 && report->range.sample_lo < report->range.sample_hi) {
+        hewn_volume_histogram histogram;
+        HEWN_TRY(hewn_volume_find_histogram(volume, report->frame, report->range.sample_lo, report->range.sample_hi,
+                                            HEWN_VOLUME_REPORT_BINS, &histogram, error));
+        for (int i = 0; i < HEWN_VOLUME_REPORT_BINS; i++) /* of values: from the least */
+            report->bins[volume->slope < 0 ? HEWN_VOLUME_REPORT_BINS - 1 - i : i] = histogram.bins[i];
+        hewn_volume_histogram_destroy(&histogram);
+    }
+    end_stage(job, "measure");
+    return HEWN_OK;
+}
+
+/* Why there is no surface, from what values there are. */
+static hewn_result explain_nothing(volume_job *job, hewn_error *error)
+{
+    hewn_volume_report *report = job->report;
+    double quarter[3];
+    HEWN_TRY(measure(job, error));
+    const hewn_volume_range *range = &report->range;
+    if (range->finite_count == 0)
+        return hewn_fail(error, HEWN_BAD_INPUT, "no value of the volume is finite, so it has no surface");
+    if (range->lo == range->hi)
+        return hewn_fail(error, HEWN_BAD_INPUT, "all values of the volume are %g, so there is no surface at %g",
+                         range->lo, report->iso_value);
+    for (int i = 0; i < 3; i++)
+        HEWN_TRY(hewn_volume_find_percentile(&job->volume, report->frame, 25.0 * (i + 1), &quarter[i], error));
+    return hewn_fail(
+        error, HEWN_BAD_INPUT,
+        "there is no surface at the iso value %.9g: the values are from %.9g to %.9g, a quarter of them up "
+        "to %.9g, half up to %.9g, three quarters up to %.9g; --iso otsu finds a value between",
+        report->iso_value, range->lo, range->hi, quarter[0], quarter[1], quarter[2]);
+}
+
+/* --- the mesh ----------------------------------------------------------------------------------------------------- */
+
+static hewn_result extract(volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    hewn_volume_report *report = job->report;
+    hewn_volume_extract_desc wanted = {.frame = desc->frame,
+                                       .iso = report->iso_value,
+                                       .method = desc->method,
+                                       .inside = desc->inside,
+                                       .open = desc->open,
+                                       .no_normals = report->to == HEWN_MESH_STL || report->to == HEWN_MESH_3MF,
+                                       .place = report->place,
+                                       .progress = desc->progress};
+    begin_stage(job);
+    hewn_result result = hewn_volume_extract(&job->volume, &wanted, &job->mesh, &report->extraction, error);
+    report->method = report->extraction.method;
+    report->open = desc->open;
+    if (result == HEWN_BAD_INPUT && report->extraction.active_cells == 0 && report->extraction.stage_count > 0)
+        return explain_nothing(job, error);
+    HEWN_TRY(result);
+    end_stage(job, "extract");
+    report->vertices = job->mesh.vertex_count;
+    report->faces = job->mesh.triangle_count;
+    /* A head that touches the border has a cap too, but not mostly. */
+    report->box_shaped = 2 * report->extraction.cap_vertices > job->mesh.vertex_count;
+    return report->box_shaped || desc->report ? measure(job, error) : HEWN_OK;
+}
+
+static hewn_result certify(volume_job *job, hewn_error *error)
+{
+    hewn_certificate *certificate = &job->report->certificate;
+    begin_stage(job);
+    HEWN_TRY(hewn_certify(&job->mesh, job->desc->progress, certificate, error));
+    certificate->max_residual = 0.0 / 0.0; /* samples are all that is known of the field */
+    end_stage(job, "certify");
+    if (certificate->manifold && certificate->oriented && (certificate->closed || job->desc->open))
+        return HEWN_OK;
+    return hewn_fail(error, HEWN_INTERNAL,
+                     "the mesh is not what it must be (%llu open edges); nothing was written, and "
+                     "this is a fault of Hewn, please report it",
+                     (unsigned long long)certificate->boundary_edges);
+}
+
+static hewn_result write(volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    hewn_volume_report *report = job->report;
+    static const char *const tags[] = {[HEWN_SPACE_RAS] = "RAS", [HEWN_SPACE_LPS] = "LPS"};
+    bool patient = report->space == HEWN_SPACE_RAS || report->space == HEWN_SPACE_LPS;
+    bool known = patient || report->space == HEWN_SPACE_GLTF;
+    char name[256];
+    begin_stage(job);
+    hewn_path_stem(strcmp(desc->output, "-") == 0 ? desc->input : desc->output, name, sizeof name);
+    hewn_write_desc write_desc = {.format = report->to,
+                                  .name = name,
+                                  .unit = report->unit,
+                                  .up = patient ? HEWN_AXIS_PLUS_Z : HEWN_AXIS_PLUS_Y,
+                                  .unsure = !known,
+                                  .space = patient ? tags[report->space] : NULL,
+                                  .progress = desc->progress};
+    if (report->space == HEWN_SPACE_GLTF && report->anatomical)
+        write_desc.space = "x left, y head, z front";
+    HEWN_TRY(hewn_triangles_write(&job->mesh, desc->output, &write_desc, error));
+    end_stage(job, "write");
+    return HEWN_OK;
+}
+
+/* --- the whole ---------------------------------------------------------------------------------------------------- */
+
+static hewn_result blame(const volume_job *job, hewn_result result, hewn_error *error)
+{
+    bool theirs = result == HEWN_OK || result == HEWN_INVALID_ARGUMENT || result == HEWN_CANCELLED;
+    return theirs ? result : hewn_blame_input(result, job->desc->input, error);
+}
+
+static hewn_result mesh(volume_job *job, hewn_error *error)
+{
+    HEWN_TRY(load(job, error));
+    HEWN_TRY(choose_place(job, error));
+    HEWN_TRY(choose_iso(job, error));
+    return extract(job, error);
+}
+
+static hewn_result run(volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    hewn_volume_report *report = job->report;
+    HEWN_TRY(check(job, error));
+    if (desc->threads > 0)
+        omp_set_num_threads((int)desc->threads);
+    report->input = hewn_strdup(desc->input);
+    report->output = hewn_strdup(desc->output);
+    if (!report->input || !report->output)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the report");
+    HEWN_TRY(blame(job, mesh(job, error), error));
+    HEWN_TRY(certify(job, error));
+    return write(job, error);
+}
+
+hewn_result hewn_volume_convert(const hewn_volume_job_desc *desc, hewn_volume_report *out, hewn_error *error)
+{
+    *out = (hewn_volume_report){0};
+    volume_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
+    hewn_result result = run(&job, error);
+    hewn_triangles_destroy(&job.mesh);
+    hewn_volume_destroy(&job.volume);
+    out->seconds = hewn_clock_now() - job.began;
+    out->peak_host_bytes = hewn_peak_host_bytes();
+    if (result == HEWN_OK && desc->report)
+        result = hewn_volume_report_write(out, desc->report, error);
+    if (result != HEWN_OK)
+        hewn_volume_report_destroy(out);
+    return result;
+}
+
+void hewn_volume_report_destroy(hewn_volume_report *report)
+{
+    hewn_free(report->input);
+    hewn_free(report->output);
+    hewn_free(report->remark);
+    *report = (hewn_volume_report){0};
+}

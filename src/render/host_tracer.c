@@ -1,0 +1,501 @@
+/* Rays on the host, many at once: those in cells of the same tape go on together, by steps that interval bounds prove
+ * free of surface. What a ray does is what shaders/render/trace.glsl does by intervals. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "render/octree.h"
+#include "render/tracer.h"
+
+enum { PACK = 1024, TAPS = 5 };
+#define FAR_AWAY 3.0e38F
+
+typedef struct host_tracer {
+    hewn_octree octree;
+    hewn_box box;
+    float slope;
+} host_tracer;
+
+/* A ray under way. */
+typedef struct walker {
+    const hewn_ray *ray;
+    const hewn_cell *cell;
+    float t, end, stride, after;
+    uint32_t steps;
+    bool met, ran_out, asks;
+} walker;
+
+/* What a thread has. */
+typedef struct crew {
+    const host_tracer *tracer;
+    const hewn_stage *stage;
+    hewn_lane_work work;
+} crew;
+
+static void place(const hewn_ray *ray, float t, float out[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = ray->from[axis] + t * ray->along[axis];
+}
+
+/* The part of a ray in a box. */
+static void clip(const float lo[3], const float hi[3], const hewn_ray *ray, float *begin, float *end)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float a = (lo[axis] - ray->from[axis]) / ray->along[axis], b = (hi[axis] - ray->from[axis]) / ray->along[axis];
+        *begin = fmaxf(*begin, fminf(a, b));
+        *end = fminf(*end, fmaxf(a, b));
+    }
+}
+
+static float enough(const hewn_stage *stage, float t)
+{
+    return stage->nearness + stage->spread * t;
+}
+
+/* --- values at points -----------------------------------------------------------------------------------------------
+ */
+
+/* Points by the tape that is enough for them; `each` is called with up to HEWN_LANES of them, by number. */
+typedef void visit(crew *c, const hewn_lane_tape *tape, const hewn_lane_points *points, const uint32_t *which,
+                   uint32_t count, void *out);
+
+static void fill_up(hewn_lane_points *points, uint32_t *count)
+{
+    uint32_t last = *count - 1;
+    for (; *count % HEWN_LANE_BLOCK != 0; ++*count)
+        for (int axis = 0; axis < 3; axis++)
+            points->at[axis][*count] = points->at[axis][last];
+}
+
+/* A point, or a ray, and the tape that it needs. */
+typedef struct wanting {
+    const hewn_lane_tape *tape;
+    uint32_t number;
+} wanting;
+
+static int by_tape(const void *a, const void *b)
+{
+    const wanting *p = a, *q = b;
+    if (p->tape != q->tape)
+        return (uintptr_t)p->tape < (uintptr_t)q->tape ? -1 : 1;
+    return (p->number > q->number) - (p->number < q->number);
+}
+
+/* How many after `first` want the same tape, at most as many as there are lanes. */
+static uint32_t run_of(const wanting *sorted, uint32_t first, uint32_t count)
+{
+    uint32_t end = first + 1;
+    while (end < count && end - first < HEWN_LANES && sorted[end].tape == sorted[first].tape)
+        end++;
+    return end - first;
+}
+
+static void visit_points(crew *c, const float (*p)[3], uint32_t count, visit *each, void *out)
+{
+    wanting sorted[PACK * TAPS];
+    uint32_t which[HEWN_LANES];
+    for (uint32_t i = 0; i < count; i++)
+        sorted[i] = (wanting){hewn_octree_find(&c->tracer->octree, p[i])->tape, i};
+    qsort(sorted, count, sizeof *sorted, by_tape);
+    for (uint32_t first = 0, taken; first < count; first += taken) {
+        hewn_lane_points points;
+        taken = run_of(sorted, first, count);
+        for (uint32_t i = 0; i < taken; i++) {
+            which[i] = sorted[first + i].number;
+            for (int axis = 0; axis < 3; axis++)
+                points.at[axis][i] = p[which[i]][axis];
+        }
+        each(c, sorted[first].tape, &points, which, taken, out);
+    }
+}
+
+static void take_values(crew *c, const hewn_lane_tape *tape, const hewn_lane_points *points, const uint32_t *which,
+                        uint32_t count, void *out)
+{
+    hewn_lane_points all = *points;
+    float values[HEWN_LANES];
+    uint32_t lanes = count;
+    fill_up(&all, &lanes);
+    hewn_lanes_value(tape, &c->work, &all, lanes, values);
+    for (uint32_t i = 0; i < count; i++)
+        ((float *)out)[which[i]] = values[i];
+}
+
+static void take_gradients(crew *c, const hewn_lane_tape *tape, const hewn_lane_points *points, const uint32_t *which,
+                           uint32_t count, void *out)
+{
+    float values[HEWN_LANES], gradients[3][HEWN_LANES];
+    hewn_lanes_gradient(tape, &c->work, points, count, values, gradients);
+    for (uint32_t i = 0; i < count; i++) {
+        float *to = (float *)out + 4 * (size_t)which[i];
+        to[0] = values[i];
+        for (int axis = 0; axis < 3; axis++)
+            to[axis + 1] = gradients[axis][i];
+    }
+}
+
+/* --- marching -------------------------------------------------------------------------------------------------------
+ */
+
+/* Passes empty cells; false where the ray is at its end. */
+static bool find_cell(crew *c, walker *w)
+{
+    const hewn_octree *octree = &c->tracer->octree;
+    for (uint32_t i = 0; i < 4 * HEWN_SKIP_STEPS && w->t < w->end; i++) {
+        float p[3], begin = 0, end = FAR_AWAY;
+        place(w->ray, w->t, p);
+        w->cell = hewn_octree_find(octree, p);
+        clip(w->cell->lo, w->cell->hi, w->ray, &begin, &end);
+        w->after = fminf(fmaxf(end, w->t) + 0.5F * octree->margin, w->end);
+        if (w->cell->state != HEWN_CELL_EMPTY) {
+            w->after = fminf(w->after, w->t + w->stride);
+            return true;
+        }
+        w->t = w->after;
+    }
+    return false;
+}
+
+static void box_step(const walker *w, hewn_lane_boxes *boxes, uint32_t lane)
+{
+    float a[3], b[3];
+    place(w->ray, w->t, a);
+    place(w->ray, w->after, b);
+    for (int axis = 0; axis < 3; axis++) {
+        float error = 5e-7F * fmaxf(fabsf(a[axis]), fabsf(b[axis]));
+        boxes->lo[axis][lane] = fminf(a[axis], b[axis]) - error;
+        boxes->hi[axis][lane] = fmaxf(a[axis], b[axis]) + error;
+    }
+}
+
+static void take_step(const crew *c, walker *w, float lo)
+{
+    float stride = w->after - w->t, near_enough = enough(c->stage, w->t);
+    w->steps++;
+    w->asks = false;
+    if (lo > 0) {
+        w->t = w->after;
+        w->stride = 2 * fmaxf(stride, near_enough);
+    } else if (stride > near_enough) {
+        w->stride = fmaxf(0.4F * stride, 0.9F * near_enough);
+    } else {
+        w->asks = true;
+    }
+}
+
+/* Of so short a way no more is proven than that its end is outside. */
+static void ask_values(crew *c, const hewn_lane_tape *tape, walker *const *group, uint32_t count)
+{
+    hewn_lane_points points;
+    float values[HEWN_LANES];
+    walker *asking[HEWN_LANES];
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        float p[3];
+        if (!group[i]->asks)
+            continue;
+        place(group[i]->ray, group[i]->after, p);
+        for (int axis = 0; axis < 3; axis++)
+            points.at[axis][left] = p[axis];
+        asking[left++] = group[i];
+    }
+    if (left == 0)
+        return;
+    uint32_t lanes = left;
+    fill_up(&points, &lanes);
+    hewn_lanes_value(tape, &c->work, &points, lanes, values);
+    for (uint32_t i = 0; i < left; i++) {
+        asking[i]->met = values[i] <= 0;
+        asking[i]->t = asking[i]->met ? asking[i]->t : asking[i]->after;
+    }
+}
+
+/* One step of walkers that share a tape. */
+static void step_together(crew *c, const hewn_lane_tape *tape, walker *const *group, uint32_t count)
+{
+    hewn_lane_boxes boxes;
+    float lo[HEWN_LANES], hi[HEWN_LANES];
+    uint32_t lanes = (count + HEWN_LANE_BLOCK - 1) / HEWN_LANE_BLOCK * HEWN_LANE_BLOCK;
+    for (uint32_t i = 0; i < lanes; i++)
+        box_step(group[i < count ? i : count - 1], &boxes, i);
+    hewn_lanes_bound(tape, &c->work, &boxes, lanes, lo, hi);
+    for (uint32_t i = 0; i < count; i++)
+        take_step(c, group[i], lo[i]);
+    ask_values(c, tape, group, count);
+}
+
+/* Until all have met something, or ended, or taken `most` steps. */
+static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
+{
+    walker *active[PACK];
+    wanting sorted[PACK];
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < count; i++)
+        active[left++] = &walkers[i];
+    while (left > 0) {
+        uint32_t kept = 0;
+        for (uint32_t i = 0; i < left; i++) {
+            walker *w = active[i];
+            if (w->met || !find_cell(c, w))
+                continue;
+            w->ran_out = w->steps >= most;
+            w->met = w->ran_out || w->cell->state == HEWN_CELL_FULL;
+            if (!w->met)
+                active[kept++] = w;
+        }
+        left = kept;
+        for (uint32_t i = 0; i < left; i++)
+            sorted[i] = (wanting){active[i]->cell->tape, i};
+        qsort(sorted, left, sizeof *sorted, by_tape);
+        for (uint32_t first = 0, taken; first < left; first += taken) {
+            walker *group[HEWN_LANES];
+            taken = run_of(sorted, first, left);
+            for (uint32_t i = 0; i < taken; i++)
+                group[i] = active[sorted[first + i].number];
+            step_together(c, sorted[first].tape, group, taken);
+        }
+    }
+}
+
+static walker start(const crew *c, const hewn_ray *ray)
+{
+    const hewn_cell *root = c->tracer->octree.cells;
+    walker w = {.ray = ray, .t = ray->begin, .end = ray->end};
+    clip(root->lo, root->hi, ray, &w.t, &w.end);
+    w.stride = 0.05F * (root->hi[0] - root->lo[0]);
+    return w;
+}
+
+/* --- what was met ---------------------------------------------------------------------------------------------------
+ */
+
+static void face_normal(const hewn_cell *root, const float p[3], const float along[3], float out[3])
+{
+    float most = 0;
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = -along[axis];
+    for (int axis = 0; axis < 3; axis++) {
+        float middle = 0.5F * (root->lo[axis] + root->hi[axis]);
+        float from = (p[axis] - middle) / (0.5F * (root->hi[axis] - root->lo[axis]));
+        if (fabsf(from) < 0.999F || fabsf(from) <= most)
+            continue;
+        most = fabsf(from);
+        out[0] = out[1] = out[2] = 0;
+        out[axis] = from > 0 ? 1 : -1;
+    }
+}
+
+static void meet_ground(const hewn_stage *stage, const hewn_ray *ray, hewn_met *met)
+{
+    uint32_t up = stage->up;
+    float t = (stage->ground - ray->from[up]) / ray->along[up];
+    if (!(stage->flags & HEWN_TRACE_GROUND) || !(t > ray->begin) || !(t < met->t) || !(t < ray->end))
+        return;
+    *met = (hewn_met){.t = t, .light = 1, .openness = 1, .what = HEWN_MET_GROUND};
+    met->normal[up] = ray->from[up] > stage->ground ? 1 : -1;
+}
+
+static void settle_normals(crew *c, const hewn_ray *rays, hewn_met *met, const uint8_t *capped, uint32_t count)
+{
+    float points[PACK][3], slopes[PACK][4];
+    for (uint32_t i = 0; i < count; i++)
+        place(&rays[i], met[i].what == HEWN_MET_SURFACE ? met[i].t : rays[i].begin, points[i]);
+    visit_points(c, (const float(*)[3])points, count, take_gradients, slopes);
+    for (uint32_t i = 0; i < count; i++) {
+        if (met[i].what != HEWN_MET_SURFACE)
+            continue;
+        const float *g = &slopes[i][1], *along = rays[i].along;
+        float steep = sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), facing = 0;
+        if (capped[i]) {
+            face_normal(c->tracer->octree.cells, points[i], along, met[i].normal);
+            continue;
+        }
+        for (int axis = 0; axis < 3; axis++) {
+            met[i].normal[axis] = steep > 0 && steep < FAR_AWAY ? g[axis] / steep : -along[axis];
+            facing -= met[i].normal[axis] * along[axis];
+        }
+        float rest = slopes[i][0] / (steep * fmaxf(facing, 0.1F));
+        if (fabsf(rest) < 2 * enough(c->stage, met[i].t))
+            met[i].t += rest;
+    }
+}
+
+/* As edge_light() of the shader, all walkers together. */
+static void find_edges(crew *c, walker *walkers, const float *ends, hewn_met *const *lit, uint32_t count)
+{
+    const hewn_cell *root = c->tracer->octree.cells;
+    float shortest = 0.004F * (root->hi[0] - root->lo[0]), points[PACK][3], values[PACK];
+    for (uint32_t i = 0; i < count; i++)
+        walkers[i].t += shortest;
+    for (uint32_t round = 0; round < HEWN_LIGHT_STEPS; round++) {
+        uint32_t which[PACK], left = 0;
+        for (uint32_t i = 0; i < count; i++)
+            if (!walkers[i].met && walkers[i].t < ends[i]) {
+                place(walkers[i].ray, walkers[i].t, points[left]);
+                which[left++] = i;
+            }
+        visit_points(c, (const float(*)[3])points, left, take_values, values);
+        for (uint32_t i = 0; i < left; i++) {
+            walker *w = &walkers[which[i]];
+            float free = values[i] / c->tracer->slope;
+            lit[which[i]]->light = fminf(lit[which[i]]->light, free / (w->t * c->stage->softness));
+            w->t += fmaxf(0.5F * free, shortest + 0.03F * w->t);
+        }
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        float share = fminf(fmaxf(lit[i]->light, 0), 1);
+        lit[i]->light = walkers[i].met ? 0 : share * share * (3 - 2 * share);
+    }
+}
+
+static void find_light(crew *c, const float (*p)[3], hewn_met *const *lit, uint32_t count)
+{
+    hewn_ray rays[PACK];
+    walker walkers[PACK];
+    hewn_met *open[PACK];
+    float begins[PACK], ends[PACK];
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        float facing = 0;
+        for (int axis = 0; axis < 3; axis++)
+            facing += lit[i]->normal[axis] * c->stage->light[axis];
+        hewn_ray *ray = &rays[left];
+        *ray = (hewn_ray){.end = FAR_AWAY};
+        memcpy(ray->from, p[i], sizeof ray->from);
+        memcpy(ray->along, c->stage->light, sizeof ray->along);
+        walkers[left] = start(c, ray);
+        lit[i]->light = facing > 0 ? 1 : 0;
+        begins[left] = walkers[left].t;
+        ends[left] = walkers[left].end;
+        if (facing > 0 && walkers[left].t < walkers[left].end)
+            open[left++] = lit[i];
+    }
+    march(c, walkers, left, HEWN_SHADOW_STEPS);
+    for (uint32_t i = 0; i < left; i++)
+        walkers[i].t = begins[i];
+    find_edges(c, walkers, ends, open, left);
+}
+
+static void find_openness(crew *c, const float (*p)[3], hewn_met *const *lit, uint32_t count)
+{
+    const hewn_cell *root = c->tracer->octree.cells;
+    float points[PACK * TAPS][3], values[PACK * TAPS], outside[PACK * TAPS];
+    for (uint32_t i = 0; i < count * TAPS; i++) {
+        const uint32_t tap = i % TAPS + 1;
+        float height = c->stage->reach * (float)(tap * tap) / (TAPS * TAPS), square = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            float at = p[i / TAPS][axis] + height * lit[i / TAPS]->normal[axis];
+            points[i][axis] = fminf(fmaxf(at, root->lo[axis]), root->hi[axis]);
+            square += (at - points[i][axis]) * (at - points[i][axis]);
+        }
+        outside[i] = sqrtf(square);
+    }
+    visit_points(c, (const float(*)[3])points, count * TAPS, take_values, values);
+    for (uint32_t i = 0; i < count; i++) {
+        float taken = 0, all = 0, weight = 1;
+        for (uint32_t tap = 1; tap <= TAPS; tap++, weight *= 0.7F) {
+            uint32_t k = i * TAPS + tap - 1;
+            float height = c->stage->reach * (float)(tap * tap) / (TAPS * TAPS);
+            float free = fmaxf(outside[k], values[k] / c->tracer->slope);
+            free = isnan(free) ? height : fminf(fmaxf(free, 0), height);
+            taken += weight * (height - free);
+            all += weight * height;
+        }
+        lit[i]->openness = 1 - taken / all;
+    }
+}
+
+static void shade(crew *c, const hewn_ray *rays, hewn_met *met, uint32_t count)
+{
+    float points[PACK][3];
+    hewn_met *lit[PACK];
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (met[i].what == HEWN_MET_NOTHING)
+            continue;
+        place(&rays[i], met[i].t, points[left]);
+        for (int axis = 0; axis < 3; axis++)
+            points[left][axis] += 3 * enough(c->stage, met[i].t) * met[i].normal[axis];
+        lit[left++] = &met[i];
+    }
+    find_light(c, (const float(*)[3])points, lit, left);
+    find_openness(c, (const float(*)[3])points, lit, left);
+}
+
+static void trace_pack(crew *c, const hewn_ray *rays, uint32_t count, hewn_met *met)
+{
+    walker walkers[PACK];
+    uint8_t capped[PACK];
+    float points[PACK][3], values[PACK];
+    for (uint32_t i = 0; i < count; i++) {
+        walkers[i] = start(c, &rays[i]);
+        place(&rays[i], walkers[i].t, points[i]);
+    }
+    visit_points(c, (const float(*)[3])points, count, take_values, values);
+    for (uint32_t i = 0; i < count; i++) {
+        capped[i] = walkers[i].t < walkers[i].end && values[i] < 0;
+        walkers[i].met = capped[i];
+    }
+    march(c, walkers, count, HEWN_RAY_STEPS);
+    for (uint32_t i = 0; i < count; i++) {
+        met[i] = (hewn_met){.t = walkers[i].met ? walkers[i].t : FAR_AWAY, .light = 1, .openness = 1};
+        met[i].what = walkers[i].met ? HEWN_MET_SURFACE : HEWN_MET_NOTHING;
+        met[i].ran_out = walkers[i].ran_out;
+        meet_ground(c->stage, &rays[i], &met[i]);
+    }
+    settle_normals(c, rays, met, capped, count);
+    if (c->stage->flags & HEWN_TRACE_SHADE)
+        shade(c, rays, met, count);
+}
+
+static hewn_result trace(void *self, const hewn_stage *stage, const hewn_ray *rays, size_t count, hewn_met *met,
+                         hewn_error *error)
+{
+    host_tracer *tracer = self;
+    hewn_result all = HEWN_OK;
+#pragma omp parallel
+    {
+        crew c = {.tracer = tracer, .stage = stage};
+        hewn_result result = hewn_lane_work_create(tracer->octree.whole, &c.work, NULL);
+#pragma omp for schedule(dynamic)
+        for (size_t first = 0; first < count; first += PACK) {
+            uint32_t taken = (uint32_t)(count - first < PACK ? count - first : PACK);
+            if (result == HEWN_OK)
+                trace_pack(&c, rays + first, taken, met + first);
+        }
+#pragma omp critical(hewn_host_tracer)
+        all = all == HEWN_OK ? result : all;
+        hewn_lane_work_destroy(&c.work);
+    }
+    return all == HEWN_OK ? HEWN_OK : hewn_fail(error, all, "out of memory following rays");
+}
+
+static void destroy(void *self)
+{
+    host_tracer *tracer = self;
+    hewn_octree_destroy(&tracer->octree);
+    hewn_free(tracer);
+}
+
+hewn_result hewn_tracer_on_host(const hewn_field *field, hewn_node root, const hewn_box *box, hewn_tracer *out,
+                                hewn_error *error)
+{
+    *out = (hewn_tracer){0};
+    host_tracer *tracer = hewn_alloc_zero(1, sizeof *tracer);
+    if (!tracer)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a renderer");
+    double slope = 1;
+    tracer->box = *box;
+    hewn_result result = hewn_common_slope(field, root, box, &slope, error);
+    if (result == HEWN_OK)
+        result = hewn_octree_create(field, root, box, &tracer->octree, error);
+    tracer->slope = (float)slope;
+    if (result != HEWN_OK)
+        hewn_free(tracer);
+    else
+        *out = (hewn_tracer){.self = tracer, .on_host = true, .trace = trace, .destroy = destroy};
+    return result;
+}

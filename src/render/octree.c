@@ -1,0 +1,149 @@
+#include "render/octree.h"
+
+#include <math.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+/* Cells are halved where tapes are long until they are 2^-6 of the box, and where they are short to 2^-4. */
+enum { LEVELS = 6, LEVELS_SHORT = 4, SHORT = 32, CHILDREN = 8 };
+
+static void box_child(const hewn_cell *cell, uint32_t child, float lo[3], float hi[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float middle = 0.5F * (cell->lo[axis] + cell->hi[axis]);
+        bool upper = child >> axis & 1;
+        lo[axis] = upper ? middle : cell->lo[axis];
+        hi[axis] = upper ? cell->hi[axis] : middle;
+    }
+}
+
+/* The eight cells of one, and the tapes of those that nothing is decided of. */
+static hewn_result divide(const hewn_octree *octree, const hewn_cell *cell, hewn_lane_work *work, hewn_cell *children,
+                          hewn_error *error)
+{
+    hewn_lane_boxes boxes;
+    float lo[HEWN_LANES], hi[HEWN_LANES];
+    for (uint32_t i = 0; i < CHILDREN; i++) {
+        children[i] = (hewn_cell){.tape = cell->tape};
+        box_child(cell, i, children[i].lo, children[i].hi);
+        for (int axis = 0; axis < 3; axis++) {
+            boxes.lo[axis][i] = children[i].lo[axis] - octree->margin;
+            boxes.hi[axis][i] = children[i].hi[axis] + octree->margin;
+        }
+    }
+    hewn_lanes_bound(cell->tape, work, &boxes, CHILDREN, lo, hi);
+    for (uint32_t i = 0; i < CHILDREN; i++) {
+        children[i].state = lo[i] > 0 ? HEWN_CELL_EMPTY : hi[i] < 0 ? HEWN_CELL_FULL : HEWN_CELL_MIXED;
+        if (lo[i] > -INFINITY)
+            HEWN_TRY(hewn_lane_tape_cut(cell->tape, work, i, &children[i].own, error));
+        if (children[i].own)
+            children[i].tape = children[i].own;
+    }
+    return HEWN_OK;
+}
+
+static bool is_divided(const hewn_cell *cell, uint32_t level)
+{
+    return cell->state == HEWN_CELL_MIXED && level < (cell->tape->count > SHORT ? LEVELS : LEVELS_SHORT);
+}
+
+/* Gives places to the children of cells first..end that are divided. */
+static hewn_result make_room(hewn_octree *octree, size_t first, size_t end, uint32_t level, hewn_error *error)
+{
+    size_t count = octree->count;
+    for (size_t i = first; i < end; i++)
+        count += is_divided(&octree->cells[i], level) ? CHILDREN : 0;
+    if (count > UINT32_MAX)
+        return hewn_fail(error, HEWN_LIMIT, "the field has too many cells");
+    HEWN_TRY(hewn_reserve((void **)&octree->cells, &octree->capacity, count, sizeof *octree->cells, error));
+    for (size_t i = first; i < end; i++)
+        if (is_divided(&octree->cells[i], level)) {
+            octree->cells[i].children = (uint32_t)octree->count;
+            for (uint32_t k = 0; k < CHILDREN; k++)
+                octree->cells[octree->count++] = (hewn_cell){0};
+        }
+    return HEWN_OK;
+}
+
+static hewn_result divide_level(hewn_octree *octree, size_t first, size_t end, hewn_error *error)
+{
+    hewn_result all = HEWN_OK;
+    hewn_error reason = {0};
+#pragma omp parallel
+    {
+        hewn_lane_work work;
+        hewn_error own = {0};
+        hewn_result result = hewn_lane_work_create(octree->whole, &work, &own);
+#pragma omp for schedule(dynamic, 16)
+        for (size_t i = first; i < end; i++) {
+            hewn_cell *cell = &octree->cells[i];
+            if (cell->children != 0 && result == HEWN_OK)
+                result = divide(octree, cell, &work, &octree->cells[cell->children], &own);
+        }
+#pragma omp critical(hewn_octree)
+        if (result != HEWN_OK && all == HEWN_OK) {
+            all = result;
+            reason = own;
+        }
+        hewn_lane_work_destroy(&work);
+    }
+    if (all != HEWN_OK && error)
+        *error = reason;
+    return all;
+}
+
+static hewn_result grow(hewn_octree *octree, const hewn_box *box, hewn_error *error)
+{
+    HEWN_TRY(hewn_reserve((void **)&octree->cells, &octree->capacity, 1, sizeof *octree->cells, error));
+    octree->cells[0] = (hewn_cell){.tape = octree->whole, .state = HEWN_CELL_MIXED};
+    octree->count = 1;
+    double most = 0, far = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        octree->cells[0].lo[axis] = (float)box->lo[axis];
+        octree->cells[0].hi[axis] = (float)box->hi[axis];
+        most = fmax(most, box->hi[axis] - box->lo[axis]);
+        far = fmax(far, fmax(fabs(box->lo[axis]), fabs(box->hi[axis])));
+    }
+    octree->margin = (float)(HEWN_CELL_MARGIN * most / (1 << LEVELS) + 1e-6 * far);
+    size_t first = 0;
+    for (uint32_t level = 0; level < LEVELS; level++) {
+        size_t end = octree->count;
+        HEWN_TRY(make_room(octree, first, end, level, error));
+        HEWN_TRY(divide_level(octree, first, end, error));
+        first = end;
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_octree_create(const hewn_field *field, hewn_node root, const hewn_box *box, hewn_octree *out,
+                               hewn_error *error)
+{
+    *out = (hewn_octree){0};
+    HEWN_TRY(hewn_lane_tape_create(field, root, &out->whole, error));
+    hewn_result result = grow(out, box, error);
+    if (result != HEWN_OK)
+        hewn_octree_destroy(out);
+    return result;
+}
+
+void hewn_octree_destroy(hewn_octree *octree)
+{
+    for (size_t i = 0; i < octree->count; i++)
+        hewn_lane_tape_destroy(&octree->cells[i].own);
+    hewn_free(octree->cells);
+    hewn_lane_tape_destroy(&octree->whole);
+    *octree = (hewn_octree){0};
+}
+
+const hewn_cell *hewn_octree_find(const hewn_octree *octree, const float p[3])
+{
+    const hewn_cell *cell = octree->cells;
+    while (cell->children != 0) {
+        uint32_t child = 0;
+        for (uint32_t axis = 0; axis < 3; axis++)
+            child |= (uint32_t)(p[axis] >= 0.5F * (cell->lo[axis] + cell->hi[axis])) << axis;
+        cell = &octree->cells[cell->children + child];
+    }
+    return cell;
+}

@@ -1,0 +1,40 @@
+/* A field's box in cells of an octree, each with the tape that is enough there. */
+#ifndef HEWN_SRC_RENDER_OCTREE_H
+#define HEWN_SRC_RENDER_OCTREE_H
+
+#include "hewn/field.h"
+#include "lanes/tape.h"
+
+typedef enum hewn_cell_state {
+    HEWN_CELL_EMPTY, /* the field is above 0 in all of it */
+    HEWN_CELL_FULL,  /* it is below 0 */
+    HEWN_CELL_MIXED
+} hewn_cell_state;
+
+typedef struct hewn_cell {
+    float lo[3], hi[3];
+    uint32_t children; /* the first of eight, x fastest; 0: none */
+    hewn_cell_state state;
+    const hewn_lane_tape *tape; /* enough in the cell and a little beyond: see HEWN_CELL_MARGIN */
+    hewn_lane_tape *own;        /* the same where it was made for this cell, else NULL */
+} hewn_cell;
+
+/* How far beyond a cell what is said of it holds: this times the longest side of the smallest cells. */
+#define HEWN_CELL_MARGIN 0.004
+
+typedef struct hewn_octree {
+    hewn_lane_tape *whole;
+    hewn_cell *cells; /* the root first */
+    size_t count, capacity;
+    float margin;
+} hewn_octree;
+
+/* HEWN_OUT_OF_MEMORY, and what hewn_lane_tape_create() returns. */
+hewn_result hewn_octree_create(const hewn_field *field, hewn_node root, const hewn_box *box, hewn_octree *out,
+                               hewn_error *error);
+void hewn_octree_destroy(hewn_octree *octree);
+
+/* The smallest cell that a point is in; points outside count as if they were on the nearest side. */
+const hewn_cell *hewn_octree_find(const hewn_octree *octree, const float p[3]);
+
+#endif

@@ -1,0 +1,25 @@
+/* One edge becoming a vertex: what it costs, whether it may, and doing it. */
+#ifndef HEWN_SRC_SIMPLIFY_COLLAPSE_H
+#define HEWN_SRC_SIMPLIFY_COLLAPSE_H
+
+#include "simplify/work.h"
+
+/* What a collapse would do: `gone` joins `kept`, which moves to `at`. */
+typedef struct simplify_plan {
+    uint32_t half; /* an edge's name */
+    uint32_t gone, kept;
+    double at[3];
+    double cost; /* infinite where ranks do not allow it */
+    bool far;    /* past the largest error */
+} simplify_plan;
+
+/* What the collapse of an edge would be by its quadrics and ranks alone. */
+simplify_plan hewn_simplify_plan(const simplify_work *work, uint32_t half);
+
+/* Whether the result stays manifold, of the same topology, and no triangle turns over or folds. */
+bool hewn_simplify_allowed(const simplify_work *work, simplify_plan *plan);
+
+/* Does it. Keys around `kept` become lower bounds. Returns how many triangles are gone. */
+uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan);
+
+#endif

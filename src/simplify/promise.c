@@ -1,0 +1,239 @@
+#include "simplify/promise.h"
+
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "geom/hausdorff.h"
+#include "hewn/check.h"
+
+/* Where a run came out too far away, the largest error by quadrics (a mean distance, at first as large as what is
+ * allowed) becomes this share of what it was; below the least share vertices stay as they are. */
+static const float lower = 0.5F, least = 0.01F;
+
+/* Intersections that are listed in one go. */
+enum { MOST_PAIRS = 1 << 16 };
+
+typedef struct simplify_promise {
+    simplify_input *in;
+    simplify_result *out;
+    hewn_simplify_report *report;
+    double allowed;
+    hewn_bvh bvh;       /* of the input */
+    uint8_t *far[2];    /* triangles of the input and of the result */
+    uint8_t *offending; /* the input's vertices that stand for vertices of the result which must not be */
+
+    uint32_t (*pairs)[2];
+} simplify_promise;
+
+/* --- measuring ---------------------------------------------------------------------------------------------------- */
+
+static hewn_triangle_view view_of(const hewn_polygons *triangles)
+{
+    return (hewn_triangle_view){.vertex_count = triangles->vertex_count,
+                                .triangle_count = triangles->face_count,
+                                .doubles = triangles->positions,
+                                .corners = triangles->corners};
+}
+
+static hewn_polygons polygons_of(const simplify_result *result)
+{
+    return (hewn_polygons){.vertex_count = result->mesh.vertex_count,
+                           .positions = result->mesh.positions,
+                           .face_count = result->mesh.face_count,
+                           .corners = result->mesh.corners};
+}
+
+static double diagonal(const hewn_bvh *bvh)
+{
+    float lo[3], hi[3];
+    double square = 0;
+    hewn_boxes4_all(&bvh->level[bvh->level_count - 1][0], lo, hi);
+    for (int axis = 0; axis < 3; axis++) {
+        double side = (double)hi[axis] - (double)lo[axis];
+        square += side * side;
+    }
+    return sqrt(square);
+}
+
+/* Both ways. `marks`: only whether it is within what is allowed, and where not; else to a hundredth. */
+static hewn_result measure(simplify_promise *job, bool marks, hewn_error *error)
+{
+    const hewn_polygons result = polygons_of(job->out);
+    const hewn_triangle_view before = view_of(&job->in->triangles), after = view_of(&result);
+    hewn_reach_desc desc = {.tolerance = 0.01, .floor = 1e-6 * diagonal(&job->bvh), .limit = job->allowed};
+    hewn_reach there, back;
+    hewn_bvh bvh;
+    if (marks)
+        desc.floor = job->allowed;
+    HEWN_TRY(hewn_progress_report(job->in->desc.progress, "measure", 0, error));
+    HEWN_TRY(hewn_bvh_build(&after, &bvh, error));
+    desc.far = marks ? job->far[0] : NULL;
+    hewn_result done = hewn_surface_reach(&before, &after, &bvh, &desc, &there, error);
+    hewn_bvh_free(&bvh);
+    HEWN_TRY(done);
+    HEWN_TRY(hewn_progress_report(job->in->desc.progress, "measure", 0.5, error));
+    desc.far = marks ? job->far[1] : NULL;
+    HEWN_TRY(hewn_surface_reach(&after, &before, &job->bvh, &desc, &back, error));
+    job->report->measured = true;
+    job->report->distance = fmax(there.high, back.high);
+    job->report->distance_low = fmax(there.low, back.low);
+    return hewn_progress_report(job->in->desc.progress, "measure", 1, error);
+}
+
+/* --- what offends ------------------------------------------------------------------------------------------------- */
+
+static uint32_t root_of(uint32_t *into, uint32_t v)
+{
+    while (into[v] != v)
+        v = into[v] = into[into[v]];
+    return v;
+}
+
+/* Triangles that are too far from the other surface, by the vertices that became their corners. */
+static void mark_far(simplify_promise *job)
+{
+    const hewn_polygons *before = &job->in->triangles;
+    const hewn_simplified *after = &job->out->mesh;
+
+    for (uint64_t t = 0; t < before->face_count; t++)
+        for (uint64_t k = 0; k < 3 && job->far[0][t]; k++)
+            job->offending[root_of(job->out->into, before->corners[3 * t + k])] = 1;
+    for (uint64_t t = 0; t < after->face_count; t++)
+        for (uint64_t k = 0; k < 3 && job->far[1][t]; k++)
+            job->offending[after->vertex_origins[after->corners[3 * t + k]]] = 1;
+}
+
+static bool is_original(const simplify_promise *job, uint32_t face)
+{
+    const hewn_simplified *after = &job->out->mesh;
+    for (uint64_t k = 0; k < 3; k++)
+        if (!job->in->frozen[after->vertex_origins[after->corners[3 * (uint64_t)face + k]]])
+            return false;
+    return true;
+}
+
+/* Pairs of triangles that are both the input's own are its affair. */
+static hewn_result mark_crossings(simplify_promise *job, hewn_error *error)
+{
+    const hewn_simplified *after = &job->out->mesh;
+    uint64_t count;
+    HEWN_TRY(hewn_count_self_intersections(after->positions, after->vertex_count, after->corners, after->face_count,
+                                           MOST_PAIRS, job->pairs, job->in->desc.progress, &count, error));
+    for (uint64_t p = 0; p < count && p < MOST_PAIRS; p++)
+        for (int side = 0; side < 2 && !(is_original(job, job->pairs[p][0]) && is_original(job, job->pairs[p][1]));
+             side++)
+            for (uint64_t k = 0; k < 3; k++)
+                job->offending[after->vertex_origins[after->corners[3 * (uint64_t)job->pairs[p][side] + k]]] = 1;
+    return HEWN_OK;
+}
+
+/* What became offending vertices must come out better in the next run: with smaller errors, or as it is. Returns how
+ * many vertices that changes something for. */
+static uint64_t tighten(simplify_promise *job, bool crossings)
+{
+    simplify_input *in = job->in;
+    uint64_t count = 0;
+    for (uint64_t v = 0; v < in->triangles.vertex_count; v++) {
+        if (!job->offending[root_of(job->out->into, (uint32_t)v)])
+            continue;
+        if (crossings) {
+            count += !in->frozen[v];
+            in->frozen[v] = 1;
+        } else if (in->limits[v] > 0) {
+            const float now = lower * in->limits[v];
+            in->limits[v] = (double)now < (double)least * job->allowed ? 0 : now;
+            count++;
+        }
+    }
+    memset(job->offending, 0, in->triangles.vertex_count);
+    return count;
+}
+
+/* --- the loop ----------------------------------------------------------------------------------------------------- */
+
+static hewn_result prepare(simplify_promise *job, hewn_error *error)
+{
+    simplify_input *in = job->in;
+    const hewn_triangle_view view = view_of(&in->triangles);
+    const hewn_simplify_desc *desc = &in->desc;
+    const bool bounded = desc->error > 0 || desc->relative_error > 0;
+    if (bounded || desc->measure)
+        HEWN_TRY(hewn_bvh_build(&view, &job->bvh, error));
+    if (!bounded && !desc->no_self_intersections)
+        return HEWN_OK;
+    in->frozen = hewn_alloc_zero(view.vertex_count, 1);
+    in->limits = bounded ? hewn_alloc(view.vertex_count, sizeof *in->limits) : NULL;
+    job->offending = hewn_alloc_zero(view.vertex_count, 1);
+    job->far[0] = bounded ? hewn_alloc(view.triangle_count, 1) : NULL;
+    job->far[1] = bounded ? hewn_alloc(view.triangle_count, 1) : NULL;
+    job->pairs = desc->no_self_intersections ? hewn_alloc(MOST_PAIRS, sizeof *job->pairs) : NULL;
+    if (!in->frozen || !job->offending || (bounded && (!in->limits || !job->far[0] || !job->far[1])) ||
+        (desc->no_self_intersections && !job->pairs))
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
+    if (bounded) {
+        const double relative = desc->relative_error * diagonal(&job->bvh);
+        job->allowed = desc->error > 0 && (relative <= 0 || desc->error < relative) ? desc->error : relative;
+        job->report->error_allowed = job->allowed;
+        for (uint64_t v = 0; v < view.vertex_count; v++)
+            in->limits[v] = (float)job->allowed;
+    }
+    return HEWN_OK;
+}
+
+/* One run and its proof; `*again`: it did not hold. */
+static hewn_result attempt(simplify_promise *job, bool *again, hewn_error *error)
+{
+    *again = false;
+    HEWN_TRY(hewn_simplify_once(job->in, job->out, job->report, error));
+    job->report->runs++;
+    if (!job->offending || !job->in->frozen)
+        return HEWN_OK;
+    if (job->far[0] && job->far[1] && job->in->limits) {
+        HEWN_TRY(measure(job, true, error));
+        mark_far(job);
+        *again = tighten(job, false) > 0;
+    }
+    if (job->pairs && !*again) {
+        HEWN_TRY(mark_crossings(job, error));
+        *again = tighten(job, true) > 0;
+    }
+    return HEWN_OK;
+}
+
+static hewn_result run(simplify_promise *job, hewn_error *error)
+{
+    bool again = true;
+    HEWN_TRY(prepare(job, error));
+    while (again) {
+        hewn_simplify_result_release(job->out);
+        HEWN_TRY(attempt(job, &again, error));
+    }
+    const double proven = job->report->distance;
+    if (job->in->desc.measure)
+        HEWN_TRY(measure(job, false, error));
+    if (job->allowed > 0) /* both are bounds */
+        job->report->distance = fmin(job->report->distance, proven);
+    if (job->allowed > 0 && job->report->distance > job->allowed)
+        return hewn_fail(error, HEWN_LIMIT, "an error of %g is too small for the rounding of these coordinates",
+                         job->allowed);
+    return HEWN_OK;
+}
+
+hewn_result hewn_simplify_promised(simplify_input *in, simplify_result *out, hewn_simplify_report *report,
+                                   hewn_error *error)
+{
+    simplify_promise job = {.in = in, .out = out, .report = report};
+    hewn_result result = in->triangles.face_count > 0
+                             ? run(&job, error)
+                             : hewn_fail(error, HEWN_BAD_INPUT, "there are no faces to simplify");
+    hewn_bvh_free(&job.bvh);
+    hewn_free(job.far[0]);
+    hewn_free(job.far[1]);
+    hewn_free(job.offending);
+    hewn_free(job.pairs);
+    if (result != HEWN_OK)
+        hewn_simplify_result_release(out);
+    return result;
+}

@@ -1,0 +1,186 @@
+/* Tapes on the host: cut ones give the whole one's bits, bounds contain values, values and gradients are the oracle's.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "lanes/image.h"
+
+static double uniform(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 33) / (double)(1u << 30) - 1;
+}
+
+/* A shape of some kind, moved and turned. */
+static hewn_node random_shape(hewn_field *field, uint64_t *state)
+{
+    double a = 0.1 + 0.2 * fabs(uniform(state)), b = 0.1 + 0.2 * fabs(uniform(state));
+    hewn_node shapes[] = {hewn_sphere(field, a),
+                          hewn_box_shape(field, a, b, 2 * a),
+                          hewn_rounded_box(field, 2 * a, 2 * b, a, 0.04),
+                          hewn_torus(field, a, 0.3 * b),
+                          hewn_cylinder(field, a, b),
+                          hewn_capsule(field, 0.5 * a, b),
+                          hewn_cone(field, a, 0.3 * b, b),
+                          hewn_sub(field, hewn_sin(field, hewn_mul(field, hewn_x(field), hewn_constant(field, 5 * a))),
+                                   hewn_square(field, hewn_y(field)))};
+    hewn_node node = shapes[(size_t)(4 * (uniform(state) + 1)) % 8];
+    node = hewn_rotate(field, node, 1, uniform(state), 0.3, 3 * uniform(state));
+    double x = 0.7 * uniform(state), y = 0.7 * uniform(state);
+    return hewn_translate(field, node, x, y, 0.7 * uniform(state));
+}
+
+static hewn_field *random_field(uint64_t seed, int count)
+{
+    hewn_field *field;
+    assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+    hewn_node all = random_shape(field, &seed);
+    for (int i = 1; i < count; i++) {
+        hewn_node next = random_shape(field, &seed);
+        int how = (int)(3 * (uniform(&seed) + 1));
+        if (how < 2)
+            all = hewn_union(field, all, next);
+        else if (how == 2)
+            all = hewn_difference(field, all, next);
+        else
+            all = hewn_smooth_union(field, all, next, (hewn_blend)(how - 3), how == 6 ? 20 : 0.1);
+    }
+    assert_int_equal(hewn_field_set_root(field, all, NULL), HEWN_OK);
+    return field;
+}
+
+static hewn_lane_tape *whole_of(const hewn_field *field, hewn_lane_work *work)
+{
+    hewn_lane_tape *tape;
+    assert_int_equal(hewn_lane_tape_create(field, hewn_field_root(field), &tape, NULL), HEWN_OK);
+    assert_int_equal(hewn_lane_work_create(tape, work, NULL), HEWN_OK);
+    return tape;
+}
+
+static void random_points(const hewn_lane_boxes *boxes, uint32_t lane, uint64_t *state, hewn_lane_points *out)
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = 0; i < HEWN_LANES; i++) {
+            float share = (float)(0.5 + 0.5 * uniform(state)), lo = boxes->lo[axis][lane], hi = boxes->hi[axis][lane];
+            out->at[axis][i] = fminf(lo + share * (hi - lo), hi);
+        }
+}
+
+static void test_values(void **state)
+{
+    (void)state;
+    uint64_t random = 7;
+    for (uint64_t seed = 1; seed <= 40; seed++) {
+        hewn_field *field = random_field(seed, 12);
+        hewn_lane_work work;
+        hewn_lane_tape *tape = whole_of(field, &work);
+        const hewn_lane_boxes box = {.lo = {{-1}, {-1}, {-1}}, .hi = {{1}, {1}, {1}}};
+        hewn_lane_points points;
+        random_points(&box, 0, &random, &points);
+        float values[HEWN_LANES], again[HEWN_LANES], gradients[3][HEWN_LANES];
+        hewn_lanes_value(tape, &work, &points, HEWN_LANES, values);
+        hewn_lanes_gradient(tape, &work, &points, HEWN_LANES, again, gradients);
+        for (int i = 0; i < HEWN_LANES; i++) {
+            double p[3] = {(double)points.at[0][i], (double)points.at[1][i], (double)points.at[2][i]}, expected[4];
+            assert_int_equal(hewn_field_gradient(field, hewn_field_root(field), p, 1, expected, NULL), HEWN_OK);
+            assert_true(fabs((double)values[i] - expected[0]) < 2e-5);
+            assert_true(fabs((double)again[i] - expected[0]) < 2e-5);
+            for (int axis = 0; axis < 3; axis++)
+                assert_true(fabs((double)gradients[axis][i] - expected[axis + 1]) < 0.02);
+        }
+        hewn_lane_work_destroy(&work);
+        hewn_lane_tape_destroy(&tape);
+        hewn_field_destroy(&field);
+    }
+}
+
+/* In random boxes: the cut tape's bits are the whole one's, and lie within the bounds. */
+static void test_cuts(void **state)
+{
+    (void)state;
+    uint64_t random = 3;
+    unsigned shorter = 0;
+    for (uint64_t seed = 1; seed <= 40; seed++) {
+        hewn_field *field = random_field(seed, 30);
+        hewn_lane_work work;
+        hewn_lane_tape *tape = whole_of(field, &work);
+        hewn_lane_boxes boxes;
+        for (int axis = 0; axis < 3; axis++)
+            for (int i = 0; i < HEWN_LANE_BLOCK; i++) {
+                double middle = uniform(&random), size = 0.01 + 0.2 * fabs(uniform(&random));
+                boxes.lo[axis][i] = (float)(middle - size);
+                boxes.hi[axis][i] = (float)(middle + size);
+            }
+        float lo[HEWN_LANES], hi[HEWN_LANES], values[HEWN_LANES], cut_values[HEWN_LANES];
+        for (uint32_t lane = 0; lane < HEWN_LANE_BLOCK; lane++) {
+            hewn_lanes_bound(tape, &work, &boxes, HEWN_LANE_BLOCK, lo, hi);
+            hewn_lane_tape *cut = NULL;
+            if (lo[lane] > -INFINITY)
+                assert_int_equal(hewn_lane_tape_cut(tape, &work, lane, &cut, NULL), HEWN_OK);
+            shorter += cut && cut->count < tape->count / 2;
+            hewn_lane_points points;
+            random_points(&boxes, lane, &random, &points);
+            hewn_lanes_value(tape, &work, &points, HEWN_LANES, values);
+            hewn_lanes_value(cut ? cut : tape, &work, &points, HEWN_LANES, cut_values);
+            assert_memory_equal(values, cut_values, sizeof values);
+            for (int i = 0; i < HEWN_LANES; i++)
+                assert_true(lo[lane] <= values[i] && values[i] <= hi[lane]);
+            hewn_lane_tape_destroy(&cut);
+        }
+        hewn_lane_work_destroy(&work);
+        hewn_lane_tape_destroy(&tape);
+        hewn_field_destroy(&field);
+    }
+    assert_true(shorter > 100);
+}
+
+/* An image by tiles is the image sample by sample. */
+static void test_image(void **state)
+{
+    (void)state;
+    enum { WIDTH = 203, HEIGHT = 77 };
+    float x[WIDTH], y[HEIGHT], values[WIDTH * HEIGHT];
+    uint8_t inside[WIDTH * HEIGHT];
+    for (int i = 0; i < WIDTH; i++)
+        x[i] = -1 + 2 * ((float)i + 0.5F) / WIDTH;
+    for (int i = 0; i < HEIGHT; i++)
+        y[i] = 1 - 2 * ((float)i + 0.5F) / HEIGHT;
+    hewn_field *field = random_field(11, 60);
+    hewn_lane_work work;
+    hewn_lane_tape *tape = whole_of(field, &work);
+    const hewn_lane_image_desc desc = {.x = x, .y = y, .z = 0.1F, .width = WIDTH, .height = HEIGHT};
+    hewn_lane_image_stats stats;
+    assert_int_equal(hewn_lanes_values(tape, &desc, values, &stats, NULL), HEWN_OK);
+    assert_int_equal(hewn_lanes_inside(tape, &desc, inside, &stats, NULL), HEWN_OK);
+    assert_true(stats.filled > 0 && stats.value_steps < (uint64_t)tape->count * WIDTH * HEIGHT / 4);
+    unsigned within = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        hewn_lane_points points = {{{0}}};
+        float expected[HEWN_LANES];
+        points.at[0][0] = x[i % WIDTH];
+        points.at[1][0] = y[i / WIDTH];
+        points.at[2][0] = 0.1F;
+        hewn_lanes_value(tape, &work, &points, HEWN_LANE_BLOCK, expected);
+        assert_memory_equal(&values[i], &expected[0], sizeof(float));
+        assert_int_equal(inside[i], expected[0] < 0);
+        within += inside[i];
+    }
+    assert_true(within > 100 && within < WIDTH * HEIGHT - 100);
+    hewn_lane_work_destroy(&work);
+    hewn_lane_tape_destroy(&tape);
+    hewn_field_destroy(&field);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_cuts),
+                                       cmocka_unit_test(test_image)};
+    return cmocka_run_group_tests_name("lanes", tests, NULL, NULL);
+}
