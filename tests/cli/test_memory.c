@@ -88,7 +88,7 @@ static void test_lists(void **state)
 {
     (void)state;
     const wanted many = {"assets/scenes/random.lua", "dc", "stl", "64", "-D", "n=200"};
-    compare(&many, "3M", 3 * 1024 * 1024, 3);
+    compare(&many, "1500K", 1500 * 1024, 3);
 }
 
 static void test_standard_output(void **state)
@@ -139,6 +139,7 @@ static void test_refusals(void **state)
 {
     (void)state;
     refuse(2, "memory", (run_desc){.arguments = {MESH, "--max-memory", "1G", "--adaptive", "0.01"}});
+    refuse(2, "memory", (run_desc){.arguments = {MESH, "--max-memory", "1G", "--simplify", "faces:1000"}});
     refuse(5, "more than the 20480 that are allowed", (run_desc){.arguments = {MESH, "--max-memory", "20K"}});
     /* The spool of parts and the file both have to fit. */
     refuse(1, "temporary file", (run_desc){.arguments = {MESH, "--max-memory", "2M"}, .file_limit = 100000});
