@@ -151,6 +151,9 @@ HEWN_API hewn_node hewn_ellipse(hewn_field *field, double x, double y); /* a low
 /* `count` corners (x, y pairs) in order, either way round; where sides cross, what lies within an odd number of loops
  * is inside. */
 HEWN_API hewn_node hewn_polygon(hewn_field *field, const double *points, size_t count);
+/* Several closed polygons at once, `counts[i]` corners of polygon i after those before it: inside is what an odd number
+ * of loops is around, so that one within another is a hole. */
+HEWN_API hewn_node hewn_contours(hewn_field *field, const double *points, const size_t *counts, size_t count);
 /* Corners at `radius` (of the star in turn at `outer` and `inner`), the first one on the y axis. */
 HEWN_API hewn_node hewn_regular_polygon(hewn_field *field, unsigned sides, double radius);
 HEWN_API hewn_node hewn_star(hewn_field *field, unsigned corners, double outer, double inner);

@@ -96,6 +96,17 @@ void hewn_lua_open_combining(lua_State *L, int methods);
 void hewn_lua_open_moving(lua_State *L, int methods);
 void hewn_lua_open_scene(lua_State *L);
 void hewn_lua_open_import(lua_State *L);
+void hewn_lua_open_text(lua_State *L);
+
+/* --- lua_import.c: files ------------------------------------------------------------------------------------------ */
+
+/* Finds a file that a script names, beside the file that says it: pushes its path as messages show it and its real
+ * path. Raises an error, which begins with the name of the function that asks, where it is not to be found or lies where
+ * the scene may not reach. */
+void hewn_lua_find_file(lua_State *L, const char *function, const char *name);
+
+/* Notes a file among the scene's, once. */
+hewn_result hewn_lua_note_file(hewn_scene *scene, const char *path, const char *real, hewn_error *reason);
 
 /* --- lua_field.c: values and arguments --------------------------------------------------------------------------- */
 
