@@ -34,7 +34,7 @@ typedef enum hewn_text_anchor {
 } hewn_text_anchor;
 
 typedef struct hewn_text_desc {
-    double size; /* of the em, in scene units: about the distance between lines; capitals are about 0.7 of it */
+    double size;      /* of the em, in scene units: about the distance between lines; capitals are about 0.7 of it */
     hewn_align align; /* of each line, at x = 0 */
     hewn_text_anchor anchor;
     double spacing;      /* more between letters, scene units; below 0: less */
@@ -44,8 +44,9 @@ typedef struct hewn_text_desc {
 
 /* A flat shape (hewn/field.h): text in UTF-8, "\n" begins a line. Letters and their places are what HarfBuzz makes of a
  * line: kerning (GPOS or kern), ligatures, marks; each line is of one script and direction. Outlines are filled by the
- * nonzero rule, whatever overlaps in or between letters; the values are exact distances to them, curves off by less than
- * a 4,000th of the em. The field refuses text that is not UTF-8, has no outline or characters that the font lacks. */
+ * nonzero rule, whatever overlaps in or between letters; the values are exact distances to them, curves off by less
+ * than a 4,000th of the em. The field refuses text that is not UTF-8, has no outline or characters that the font lacks.
+ */
 HEWN_API hewn_node hewn_font_text(hewn_field *field, hewn_font *font, const char *text, const hewn_text_desc *desc);
 
 #ifdef __cplusplus

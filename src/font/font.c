@@ -180,7 +180,7 @@ static int curve_to(const FT_Vector *a, const FT_Vector *b, const FT_Vector *c, 
     double points[4][2] = {{own->at[0], own->at[1]}};
     for (unsigned i = 0; i < degree; i++)
         place(own, given[i], points[i + 1]);
-    return draw(own, degree, (const double (*)[2])points);
+    return draw(own, degree, (const double(*)[2])points);
 }
 
 static int line_to(const FT_Vector *to, void *user)
@@ -201,10 +201,8 @@ static int cubic_to(const FT_Vector *one, const FT_Vector *two, const FT_Vector 
 hewn_result hewn_font_add_glyph(hewn_font *font, uint32_t glyph, int64_t x, int64_t y, hewn_grid_sides *sides,
                                 hewn_error *error)
 {
-    static const FT_Outline_Funcs calls = {.move_to = move_to,
-                                           .line_to = line_to,
-                                           .conic_to = conic_to,
-                                           .cubic_to = cubic_to};
+    static const FT_Outline_Funcs calls = {
+        .move_to = move_to, .line_to = line_to, .conic_to = conic_to, .cubic_to = cubic_to};
     char what[64];
     snprintf(what, sizeof what, "the font's glyph %u", glyph);
     FT_Error code = FT_Load_Glyph(font->face, glyph, FT_LOAD_NO_SCALE | FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP);

@@ -301,10 +301,8 @@ static hewn_result set(hewn_field *field, hewn_font *font, const char *text, con
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a spacing of %g, or of lines of %g, makes no sense",
                          desc->spacing, desc->line_spacing);
     HEWN_TRY(check_text(text, error));
-    setting own = {.font = font,
-                   .desc = desc,
-                   .step = desc->size / (font->units * font->grid),
-                   .buffer = hb_buffer_create()};
+    setting own = {
+        .font = font, .desc = desc, .step = desc->size / (font->units * font->grid), .buffer = hb_buffer_create()};
     hewn_result result = build(&own, field, text, out, error);
     hb_buffer_destroy(own.buffer);
     for (size_t i = 0; i < own.count; i++)

@@ -32,8 +32,8 @@ void hewn_lua_find_file(lua_State *L, const char *function, const char *name)
 {
     const hewn_scene *scene = hewn_lua_of(L)->scene;
     if (name[0] == '/' && scene->root)
-        luaL_error(L, "%s: '%s' is an absolute path; a scene's files stay in its folder (--allow-path lets it)", function,
-                   name);
+        luaL_error(L, "%s: '%s' is an absolute path; a scene's files stay in its folder (--allow-path lets it)",
+                   function, name);
     char *path = hewn_path_beside(calling_file(L), name);
     char *real = path ? hewn_path_real(path) : NULL;
     int code = errno;
