@@ -93,6 +93,7 @@ void hewn_lua_open_arithmetic(lua_State *L, int methods);
 void hewn_lua_open_catalogue(lua_State *L, int methods);
 void hewn_lua_open_shapes(lua_State *L);
 void hewn_lua_open_combining(lua_State *L, int methods);
+void hewn_lua_open_paint(lua_State *L, int methods);
 void hewn_lua_open_moving(lua_State *L, int methods);
 void hewn_lua_open_scene(lua_State *L);
 void hewn_lua_open_import(lua_State *L);
@@ -118,6 +119,7 @@ void hewn_lua_check_count(lua_State *L, const char *name, int least, int most);
 
 double hewn_lua_number(lua_State *L, int argument, const char *name);      /* finite */
 double hewn_lua_positive(lua_State *L, int argument, const char *name);    /* finite, above 0 */
+double hewn_lua_part(lua_State *L, int argument, const char *name);        /* from 0 to 1 */
 const char *hewn_lua_string(lua_State *L, int argument, const char *name); /* without NUL inside */
 bool hewn_lua_is_field(lua_State *L, int index);
 hewn_node hewn_lua_field(lua_State *L, int argument, const char *name);   /* a field only */
