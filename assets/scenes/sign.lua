@@ -15,9 +15,7 @@ local frame = (outline(2.5) & ~outline(2.5 + rim)):extrude(2):move(0, 0, thickne
 local body = smooth_union(plate, frame, 1)
 
 -- What is cut paints the cut, so the letters are gold down to their ground.
-local name = text(words, font, 34, {align = "center", anchor = "middle", spacing = 1}):move(0, 6, 0)
-local street = text("carved in space · 1987", font, 9, {align = "center", anchor = "middle"}):move(0, -19, 0)
-local letters = (name | street):extrude(2 * depth):move(0, 0, thickness / 2):color("#d9c58b")
+local letters = text(words, font, 40, {align = "center", anchor = "middle", spacing = 1}):extrude(2 * depth):move(0, 0, thickness / 2):color("#d9c58b")
 
 local screws = (cylinder(2, 3 * thickness) | cone(1, 4, 4):move(0, thickness / 2 - 1, 0)):rotate_x(90)
 screws = screws:move(width / 2 - 11, 0, 0):symmetric("x")
