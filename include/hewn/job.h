@@ -51,8 +51,8 @@ typedef struct hewn_mesh_job_desc {
 
 /* A stage of a job, in seconds since the job began. Stages may overlap. */
 typedef struct hewn_report_stage {
-    char name[16]; /* startup, load, compile, prepare, cull or count, evaluate, extract, read_back, collapse, simplify,
-                      certify, write, shutdown */
+    char name[16]; /* startup, load, compile, prepare, cull or count, evaluate, extract, read_back, collapse, paint,
+                      simplify, certify, write, shutdown */
     double begin, end;
 } hewn_report_stage;
 
@@ -86,6 +86,8 @@ typedef struct hewn_report {
     bool quads;
     double adaptive;     /* asked for; 0 where it was not */
     uint64_t max_memory; /* asked for; 0 where it was not */
+    bool colors;         /* whether vertices have colours, */
+    bool labels;         /* and faces (GLB: vertices) labels, from the scene's paint */
     hewn_bounds_source bounds_source;
     hewn_extract_stats extraction; /* bounds, cells, counts of visited cells and bricks */
     bool simplified;

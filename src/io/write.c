@@ -201,7 +201,15 @@ hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *pa
     const hewn_write_desc *wanted = desc ? desc : &defaults;
     const hewn_format_writer *writer;
     HEWN_TRY(find_writer(path, wanted->format, &writer, error));
-    hewn_channel normals = {.info = {"normal", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3}, .values = triangles->normals};
+    enum { MORE = 4 };
+    hewn_channel channels[MORE + 1] = {
+        {.info = {"normal", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3}, .values = triangles->normals}};
+    uint32_t count = triangles->normals ? 1 : 0;
+    if (wanted->channel_count > MORE)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "at most %d channels besides, not %u", MORE,
+                         wanted->channel_count);
+    for (uint32_t i = 0; i < wanted->channel_count; i++)
+        channels[count++] = wanted->channels[i];
     hewn_writing job = {.vertex_count = triangles->vertex_count,
                         .face_count = triangles->triangle_count,
                         .corner_count = 3 * triangles->triangle_count,
@@ -210,8 +218,8 @@ hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *pa
                         .each = 3,
                         .corners = triangles->indices,
                         .triangle_count = triangles->triangle_count,
-                        .channels = &normals,
-                        .channel_count = triangles->normals ? 1 : 0,
+                        .channels = channels,
+                        .channel_count = count,
                         .unit = wanted->unit || wanted->unsure ? wanted->unit : hewn_unit_at(0),
                         .up = wanted->up,
                         .up_known = !wanted->unsure,

@@ -13,6 +13,7 @@
 #include "pipeline/domain.h"
 #include "pipeline/kept.h"
 #include "pipeline/mesh_parts.h"
+#include "pipeline/paint_step.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
 
@@ -28,6 +29,7 @@ typedef struct mesh_job {
     uint64_t messages; /* of the validation layer, from before this job */
     hewn_triangles triangles;
     hewn_mesh_parts parts; /* where there is a limit of memory: `triangles` is a view of them */
+    hewn_mesh_paint paint;
 } mesh_job;
 
 static double seconds_since(double began)
@@ -175,6 +177,19 @@ static hewn_result extract(mesh_job *job, const hewn_box *bounds, hewn_error *er
     return HEWN_OK;
 }
 
+/* Before faces are merged, so that colours and labels count in that. */
+static hewn_result find_paint(mesh_job *job, hewn_error *error)
+{
+    const hewn_field *field = hewn_scene_field(job->scene);
+    double begin = seconds_since(job->began);
+    HEWN_TRY(hewn_mesh_paint_find(field, &job->triangles, job->desc->quads, job->format, &job->paint, error));
+    job->report->colors = job->paint.colors != NULL;
+    job->report->labels = job->paint.labels != NULL;
+    if (job->paint.colors || job->paint.labels)
+        hewn_report_add_stage(job->report, "paint", begin, seconds_since(job->began));
+    return HEWN_OK;
+}
+
 static hewn_result simplify(mesh_job *job, hewn_error *error)
 {
     hewn_simplify_desc desc = *job->desc->simplify;
@@ -182,7 +197,7 @@ static hewn_result simplify(mesh_job *job, hewn_error *error)
     desc.labels = NULL;
     desc.frozen = NULL;
     desc.progress = job->desc->progress;
-    HEWN_TRY(hewn_triangles_simplify(&job->triangles, &desc, &job->report->simplify, error));
+    HEWN_TRY(hewn_mesh_paint_simplify(&job->triangles, &job->paint, &desc, &job->report->simplify, error));
     job->report->simplified = true;
     job->report->extraction.max_residual = NAN; /* was that of the cells' vertices */
     hewn_report_add_stage(job->report, "simplify", begin, seconds_since(job->began));
@@ -220,12 +235,18 @@ static hewn_result write_mesh(mesh_job *job, hewn_error *error)
     HEWN_TRY(hewn_progress_report(desc->progress, "write", 0, error));
     double begin = seconds_since(job->began);
     char name[256];
+    hewn_channel channels[2];
+    uint32_t channel_count = 0;
+    HEWN_TRY(hewn_mesh_paint_channels(&job->paint, job->format, job->triangles.vertex_count, channels, &channel_count,
+                                      error));
     hewn_path_stem(desc->scene.path, name, sizeof name);
     hewn_write_desc write_desc = {
         .format = job->format,
         .name = strcmp(desc->output, "-") == 0 ? name : NULL,
         .unit = hewn_scene_unit(job->scene),
         .up = hewn_scene_up(job->scene),
+        .channels = channels,
+        .channel_count = channel_count,
         .quads = desc->quads,
         .progress = desc->progress,
     };
@@ -251,10 +272,16 @@ static hewn_result run(mesh_job *job, hewn_error *error)
     hewn_result result = load(job, &bounds, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->scene.path, error);
+    if (desc->max_memory > 0 && hewn_mesh_paint_wanted(hewn_scene_field(job->scene), job->format))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "colours and labels need the whole mesh in memory, so they exclude a limit of memory; .stl "
+                         "and .3mf files have none");
     HEWN_TRY(compile(job, error));
     result = extract(job, &bounds, error);
     if (result != HEWN_OK)
         return result == HEWN_BAD_INPUT ? hewn_blame_input(result, desc->scene.path, error) : result;
+    if (desc->max_memory == 0)
+        HEWN_TRY(find_paint(job, error));
     if (desc->simplify)
         HEWN_TRY(simplify(job, error));
     HEWN_TRY(certify(job, error));
@@ -272,6 +299,7 @@ static void release(mesh_job *job, hewn_result result)
         job->triangles = (hewn_triangles){0};
     hewn_triangles_destroy(&job->triangles);
     hewn_mesh_parts_clear(&job->parts);
+    hewn_mesh_paint_destroy(&job->paint);
     (void)hewn_opening_wait(&kept->opening, &device, NULL); /* it reads the description from another thread */
     if (device)
         job->report->peak_device_bytes = hewn_device_peak_bytes(device);

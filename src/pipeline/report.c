@@ -117,6 +117,8 @@ static void print_request(hewn_json *json, const hewn_report *report)
     hewn_json_string(json, "method", hewn_method_name(report->method));
     hewn_json_bool(json, "open", report->open);
     hewn_json_bool(json, "quads", report->quads);
+    hewn_json_bool(json, "colors", report->colors);
+    hewn_json_bool(json, "labels", report->labels);
     if (report->adaptive > 0)
         hewn_json_number(json, "adaptive", report->adaptive);
     else
