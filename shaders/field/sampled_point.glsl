@@ -1,0 +1,74 @@
+/* Samples at points. src/field/sampling.h has their layout in memory. */
+//: sampled
+layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer f_samples { uint at[]; };
+
+#define F_SAMPLED float low, const float middle, const float high, const float nx, const float ny, const float nz, \
+    const float grows, const float most
+
+/* An address comes as three whole numbers of 22 bits. */
+f_samples f_samples_of(const float low, const float middle, const float high)
+{
+    uint a = uint(low), b = uint(middle), c = uint(high);
+    return f_samples(uvec2(a | b << 22, b >> 10 | c << 12));
+}
+
+/* The samples at the corners of the cell that a point is in, low ones along z first; how far along it is, and how many
+ * such cells there are in one of the lattice; and what is left of the point past the lattice. */
+struct f_cell_of_samples {
+    vec4 low, high;
+    vec3 t, beyond;
+    float scale;
+};
+
+precise f_cell_of_samples f_find_samples(const f_samples s, const vec3 at, const vec3 n)
+{
+    precise vec3 u = at + n * 0.5;
+    vec3 inside = mix(mix(u, vec3(0.0), lessThan(u, vec3(0.0))), n, greaterThan(u, n));
+    vec3 last = max(n - 1.0, vec3(0.0));
+    uvec3 cells = uvec3(n), cell = uvec3(mix(floor(inside), last, greaterThan(inside, last)));
+    uvec3 bricks = max((cells + 7u) >> 3u, uvec3(1u)), brick = cell >> 3u;
+    uint count = bricks.x * bricks.y * bricks.z;
+    uint fine = s.at[16u + brick.x + bricks.x * (brick.y + bricks.y * brick.z)];
+    bool coarse = fine == 0u, flat_one = cells.z == 0u;
+    uint row = coarse ? bricks.x + 1u : 9u, layer = coarse ? row * (bricks.y + 1u) : 81u;
+    layer = flat_one ? 0u : layer;
+    uvec3 from = coarse ? brick : cell & 7u;
+    uint first = (coarse ? 16u + count : fine) + from.x + row * from.y + layer * from.z;
+    f_cell_of_samples r;
+    r.scale = f_pick(coarse, 0.125, 1.0);
+    precise vec3 beyond = u - inside;
+    precise vec3 t = (inside - vec3(coarse ? brick << 3u : cell)) * r.scale;
+    r.beyond = beyond;
+    r.t = t;
+    r.low = uintBitsToFloat(uvec4(s.at[first], s.at[first + 1u], s.at[first + row], s.at[first + row + 1u]));
+    first += layer;
+    r.high = uintBitsToFloat(uvec4(s.at[first], s.at[first + 1u], s.at[first + row], s.at[first + row + 1u]));
+    return r;
+}
+
+precise float f_between_samples(const f_cell_of_samples c)
+{
+    vec4 plane = c.low + c.t.z * (c.high - c.low);
+    vec2 line = plane.xy + c.t.y * (plane.zw - plane.xy);
+    return line.x + c.t.x * (line.y - line.x);
+}
+
+vec3 f_numbers(const float a, const float b, const float c)
+{
+    return vec3(f_pick(f_is_nan(a), 0.0, a), f_pick(f_is_nan(b), 0.0, b), f_pick(f_is_nan(c), 0.0, c));
+}
+
+precise float f_past_samples(const f_cell_of_samples c, const float value, const float grows)
+{
+    precise float beyond = (c.beyond.x * c.beyond.x + c.beyond.y * c.beyond.y + c.beyond.z * c.beyond.z) * grows;
+    return f_pick(beyond > 0.0, sqrt(beyond + value * value), value);
+}
+
+precise float f_sampled(const float a, const float b, const float c, const F_SAMPLED)
+{
+    f_samples s = f_samples_of(low, middle, high);
+    f_cell_of_samples cell = f_find_samples(s, f_numbers(a, b, c), vec3(nx, ny, nz));
+    float value = f_past_samples(cell, f_between_samples(cell), grows);
+    bool first = f_is_nan(a, b), second = f_is_nan(c);
+    return f_pick(first || second, F_NAN, value);
+}
