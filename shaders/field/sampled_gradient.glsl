@@ -10,7 +10,7 @@ precise vec3 f_sample_slopes(const f_cell_of_samples c)
 
 precise vec4 f_sampled(const vec4 a, const vec4 b, const vec4 c, const F_SAMPLED)
 {
-    f_samples s = f_samples_of(low, middle, high);
+    uvec2 s = f_samples_of(low, middle, high);
     f_cell_of_samples cell = f_find_samples(s, f_numbers(a.w, b.w, c.w), vec3(nx, ny, nz));
     float between = f_between_samples(cell), value = f_past_samples(cell, between, grows);
     vec3 slope = mix(f_sample_slopes(cell), vec3(0.0), notEqual(cell.beyond, vec3(0.0)));

@@ -1,30 +1,22 @@
 /* Bounds of samples: between the least and the greatest around the box, and about the value in the middle by how steep
  * they are there. */
 //: sampled
-/* Least, greatest and steepest of the blocks that cells meet, on the level where that is at most two along each axis. */
-vec3 f_sample_extent(const f_samples s, const uvec3 from, const uvec3 to, const uvec3 bricks)
+/* Least, greatest and steepest of the entry that holds cells. */
+vec3 f_sample_extent(const uvec2 s, const uvec3 from, const uvec3 to, const uvec3 bricks)
 {
-    uvec3 first = from >> 3u, last = to >> 3u, apart = last - first;
+    uvec3 first = from >> 3u, apart = (to >> 3u) - first;
     uint longest = max(apart.x, max(apart.y, apart.z));
-    uint level = longest <= 1u ? 0u : uint(findMSB(longest - 1u)) + 1u;
-    uvec3 blocks = (bricks + (1u << level) - 1u) >> level;
-    first >>= level;
-    last >>= level;
-    uint nodes = s.at[level];
-    vec3 all = vec3(F_INF, -F_INF, 0.0);
-    [[unroll]] for (uint k = 0u; k < 8u; k++) {
-        uvec3 b = mix(first, last, bvec3((k & 1u) != 0u, (k & 2u) != 0u, (k & 4u) != 0u));
-        uint at = nodes + 3u * (b.x + blocks.x * (b.y + blocks.y * b.z));
-        vec3 one = uintBitsToFloat(uvec3(s.at[at], s.at[at + 1u], s.at[at + 2u]));
-        all = vec3(f_pick(one.x < all.x, one.x, all.x), f_pick(one.y > all.y, one.y, all.y),
-                   f_pick(one.z > all.z, one.z, all.z));
-    }
-    return all;
+    uint size = longest <= 1u ? 0u : uint(findMSB(longest - 1u)) + 1u;
+    uvec3 entries = (bricks + (1u << size) - 1u) >> size;
+    first >>= size;
+    uint level = longest == 0u ? 0u : size + 1u;
+    uint at = f_samples(s).at[level] + 3u * (first.x + entries.x * (first.y + entries.y * first.z));
+    return uintBitsToFloat(f_three_samples(f_word_of(s, at)).at);
 }
 
 precise vec2 f_sampled(const vec2 a, const vec2 b, const vec2 c, const F_SAMPLED)
 {
-    f_samples s = f_samples_of(low, middle, high);
+    uvec2 s = f_samples_of(low, middle, high);
     vec3 n = vec3(nx, ny, nz), half_n = n * 0.5;
     vec3 lo = f_numbers(a.x, b.x, c.x), hi = f_numbers(a.y, b.y, c.y);
     vec3 size = max(abs(lo), abs(hi)) + half_n, slack = size * (2.0 * F_U);

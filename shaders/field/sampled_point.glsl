@@ -1,15 +1,29 @@
 /* Samples at points. src/field/sampling.h has their layout in memory. */
 //: sampled
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer f_samples { uint at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer f_two_samples { uvec2 at; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer f_three_samples { uvec3 at; };
 
 #define F_SAMPLED float low, const float middle, const float high, const float nx, const float ny, const float nz, \
     const float grows, const float most
 
 /* An address comes as three whole numbers of 22 bits. */
-f_samples f_samples_of(const float low, const float middle, const float high)
+uvec2 f_samples_of(const float low, const float middle, const float high)
 {
     uint a = uint(low), b = uint(middle), c = uint(high);
-    return f_samples(uvec2(a | b << 22, b >> 10 | c << 12));
+    return uvec2(a | b << 22, b >> 10 | c << 12);
+}
+
+/* The address of a word. Words that lie side by side are read at once: CPU drivers read lane by lane. */
+uvec2 f_word_of(const uvec2 s, const uint word)
+{
+    uint carry, low = uaddCarry(s.x, word << 2u, carry);
+    return uvec2(low, s.y + (word >> 30u) + carry);
+}
+
+vec2 f_pair(const uvec2 s, const uint word)
+{
+    return uintBitsToFloat(f_two_samples(f_word_of(s, word)).at);
 }
 
 /* The samples at the corners of the cell that a point is in, low ones along z first; how far along it is, and how many
@@ -20,7 +34,7 @@ struct f_cell_of_samples {
     float scale;
 };
 
-precise f_cell_of_samples f_find_samples(const f_samples s, const vec3 at, const vec3 n)
+precise f_cell_of_samples f_find_samples(const uvec2 s, const vec3 at, const vec3 n)
 {
     precise vec3 u = at + n * 0.5;
     vec3 inside = mix(mix(u, vec3(0.0), lessThan(u, vec3(0.0))), n, greaterThan(u, n));
@@ -28,7 +42,7 @@ precise f_cell_of_samples f_find_samples(const f_samples s, const vec3 at, const
     uvec3 cells = uvec3(n), cell = uvec3(mix(floor(inside), last, greaterThan(inside, last)));
     uvec3 bricks = max((cells + 7u) >> 3u, uvec3(1u)), brick = cell >> 3u;
     uint count = bricks.x * bricks.y * bricks.z;
-    uint fine = s.at[16u + brick.x + bricks.x * (brick.y + bricks.y * brick.z)];
+    uint fine = f_samples(s).at[16u + brick.x + bricks.x * (brick.y + bricks.y * brick.z)];
     bool coarse = fine == 0u, flat_one = cells.z == 0u;
     uint row = coarse ? bricks.x + 1u : 9u, layer = coarse ? row * (bricks.y + 1u) : 81u;
     layer = flat_one ? 0u : layer;
@@ -40,9 +54,9 @@ precise f_cell_of_samples f_find_samples(const f_samples s, const vec3 at, const
     precise vec3 t = (inside - vec3(coarse ? brick << 3u : cell)) * r.scale;
     r.beyond = beyond;
     r.t = t;
-    r.low = uintBitsToFloat(uvec4(s.at[first], s.at[first + 1u], s.at[first + row], s.at[first + row + 1u]));
+    r.low = vec4(f_pair(s, first), f_pair(s, first + row));
     first += layer;
-    r.high = uintBitsToFloat(uvec4(s.at[first], s.at[first + 1u], s.at[first + row], s.at[first + row + 1u]));
+    r.high = vec4(f_pair(s, first), f_pair(s, first + row));
     return r;
 }
 
@@ -66,7 +80,7 @@ precise float f_past_samples(const f_cell_of_samples c, const float value, const
 
 precise float f_sampled(const float a, const float b, const float c, const F_SAMPLED)
 {
-    f_samples s = f_samples_of(low, middle, high);
+    uvec2 s = f_samples_of(low, middle, high);
     f_cell_of_samples cell = f_find_samples(s, f_numbers(a, b, c), vec3(nx, ny, nz));
     float value = f_past_samples(cell, f_between_samples(cell), grows);
     bool first = f_is_nan(a, b), second = f_is_nan(c);

@@ -392,7 +392,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
     if (code->samples.count > 0)
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n"
                                "#extension GL_EXT_buffer_reference_uvec2 : require\n"
-                               "#extension GL_EXT_control_flow_attributes : require\n");
+                               "#extension GL_EXT_scalar_block_layout : require\n");
     hewn_text_append(text, desc->head + version);
     hewn_text_append(text, "\n");
     if (code->listed) {

@@ -30,12 +30,12 @@ static uint64_t corner_count(const uint32_t cells[3], const uint32_t bricks[3])
     return (uint64_t)(bricks[0] + 1) * (bricks[1] + 1) * (is_flat(cells) ? 1 : bricks[2] + 1);
 }
 
-/* Levels up to the one that is a single block. */
+/* Levels up to the one whose blocks are one. */
 static uint32_t count_levels(const uint32_t bricks[3])
 {
-    uint32_t most = bricks[0] > bricks[1] ? bricks[0] : bricks[1], level = 0;
+    uint32_t most = bricks[0] > bricks[1] ? bricks[0] : bricks[1], level = 1;
     most = bricks[2] > most ? bricks[2] : most;
-    while ((most + (1u << level) - 1) >> level > 1)
+    while ((most + (1u << (level - 1)) - 1) >> (level - 1) > 1)
         level++;
     return level + 1;
 }
@@ -43,8 +43,9 @@ static uint32_t count_levels(const uint32_t bricks[3])
 static uint64_t level_nodes(const uint32_t bricks[3], uint32_t level)
 {
     uint64_t nodes = 1;
+    uint32_t size = level == 0 ? 0 : level - 1;
     for (int i = 0; i < 3; i++)
-        nodes *= (bricks[i] + (1u << level) - 1) >> level;
+        nodes *= (bricks[i] + (1u << size) - 1) >> size;
     return nodes;
 }
 
@@ -272,40 +273,43 @@ static extent brick_extent(const hewn_sampling *s, const uint32_t at[3])
     return extent_of(hewn_sampling_corners(s) + at[0] + row * at[1] + layer * at[2], one, row, flat ? 0 : layer, BRICK);
 }
 
-static extent *node_of(const hewn_sampling *s, uint32_t level, const uint32_t at[3])
+static extent *entry_of(const hewn_sampling *s, uint32_t level, const uint32_t at[3])
 {
     uint64_t place =
-        at[0] + hewn_sampling_blocks(s, 0, level) * (at[1] + (uint64_t)hewn_sampling_blocks(s, 1, level) * at[2]);
+        at[0] + hewn_sampling_entries(s, 0, level) * (at[1] + (uint64_t)hewn_sampling_entries(s, 1, level) * at[2]);
     return (extent *)(void *)((uint32_t *)s->words + s->words[level] + NODE_WORDS * place);
 }
 
+/* Of level 1 from bricks. A block twice as long and the next one are the entries below at its begin and at the next
+ * one's. */
 static extent block_extent(const hewn_sampling *s, uint32_t level, const uint32_t at[3])
 {
     extent out = no_extent;
     for (uint32_t c = 0; c < 8; c++) {
-        uint32_t child[3];
+        uint32_t part[3];
         bool there = true;
         for (int i = 0; i < 3; i++) {
-            child[i] = 2 * at[i] + (c >> i & 1);
-            there = there && child[i] < hewn_sampling_blocks(s, i, level - 1);
+            uint32_t far = c >> i & 1;
+            part[i] = level == 1 ? at[i] + far : 2 * (at[i] + far);
+            there = there && part[i] < hewn_sampling_entries(s, i, level - 1);
         }
         if (there)
-            widen(&out, *node_of(s, level - 1, child));
+            widen(&out, *entry_of(s, level - 1, part));
     }
     return out;
 }
 
 static void make_level(const hewn_sampling *s, uint32_t level)
 {
-    uint32_t blocks[3];
+    uint32_t entries[3];
     for (int i = 0; i < 3; i++)
-        blocks[i] = hewn_sampling_blocks(s, i, level);
-    uint64_t count = (uint64_t)blocks[0] * blocks[1] * blocks[2];
+        entries[i] = hewn_sampling_entries(s, i, level);
+    uint64_t count = (uint64_t)entries[0] * entries[1] * entries[2];
 #pragma omp parallel for schedule(dynamic, 64)
     for (uint64_t b = 0; b < count; b++) {
-        const uint32_t at[3] = {(uint32_t)(b % blocks[0]), (uint32_t)(b / blocks[0] % blocks[1]),
-                                (uint32_t)(b / ((uint64_t)blocks[0] * blocks[1]))};
-        *node_of(s, level, at) = level == 0 ? brick_extent(s, at) : block_extent(s, level, at);
+        const uint32_t at[3] = {(uint32_t)(b % entries[0]), (uint32_t)(b / entries[0] % entries[1]),
+                                (uint32_t)(b / ((uint64_t)entries[0] * entries[1]))};
+        *entry_of(s, level, at) = level == 0 ? brick_extent(s, at) : block_extent(s, level, at);
     }
 }
 

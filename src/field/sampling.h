@@ -1,11 +1,12 @@
 /* The inside of a hewn_sampling: one block of 32-bit words that the host and shaders read alike (shaders/field/sampled*
  * has the same layout), from the front:
- *   - HEWN_SAMPLING_HEAD words: the place of each level of the pyramid;
+ *   - HEWN_SAMPLING_HEAD words: the places of the levels of the pyramid;
  *   - a word for each brick of 8 x 8 x 8 cells, x fastest: the place of its samples, or 0, which makes it a coarse one:
  *     its values are those between its eight corners;
  *   - a float for each corner of a brick;
- *   - the pyramid: on level 0 the least and greatest sample and the greatest slope of each brick, on level n of blocks
- *     of 2^n bricks a side;
+ *   - the pyramid: on level 0 the least and greatest sample and the greatest slope of each brick; on level n + 1 those
+ *     of each block of 2^n bricks a side together with the next one along each axis, so that whatever is no longer than
+ *     such a block lies in one entry;
  *   - the samples of bricks that are not coarse, 9 x 9 x 9, their far sides included.
  * A flat sampling has one layer of samples: then bricks are 8 x 8 cells and have 9 x 9 samples.
  *
@@ -61,10 +62,11 @@ void hewn_sampling_finish(hewn_sampling *sampling);
 /* One more user of it; each ends with hewn_sampling_destroy(). */
 hewn_sampling *hewn_sampling_share(const hewn_sampling *sampling);
 
-/* How many blocks of 2^level bricks lie along an axis. */
-static inline uint32_t hewn_sampling_blocks(const hewn_sampling *sampling, int axis, uint32_t level)
+/* How many entries lie along an axis. */
+static inline uint32_t hewn_sampling_entries(const hewn_sampling *sampling, int axis, uint32_t level)
 {
-    return (sampling->bricks[axis] + (1u << level) - 1) >> level;
+    uint32_t size = level == 0 ? 0 : level - 1;
+    return (sampling->bricks[axis] + (1u << size) - 1) >> size;
 }
 
 /* The value at a place counted in cells from the middle of the lattice, and its derivatives after the place (or NULL).

@@ -8,7 +8,8 @@ enum { BRICK = HEWN_SAMPLING_BRICK, SIDE = HEWN_SAMPLING_SIDE };
 static hewn_result check(const float *values, uint32_t columns, uint32_t rows, hewn_error *error)
 {
     if (!values || columns < 2 || rows < 2)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "heights need at least 2 x 2 values, not %u x %u", columns, rows);
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "heights need at least 2 x 2 values, not %u x %u", columns,
+                         rows);
     for (uint64_t i = 0; i < (uint64_t)columns * rows; i++)
         if (!isfinite(values[i]))
             return hewn_fail(error, HEWN_BAD_INPUT, "the height in column %u of row %u is no finite number",

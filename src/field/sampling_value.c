@@ -88,27 +88,21 @@ typedef struct extent {
     float least, greatest, steepest;
 } extent;
 
-/* Of the blocks that a box of cells meets, on the level where that is at most two along each axis. */
+/* Of the entry that holds a box of cells. */
 static extent extent_of(const hewn_sampling *s, const uint32_t from[3], const uint32_t to[3])
 {
-    uint32_t longest = 0, level = 0, blocks[3], at[3];
+    uint32_t longest = 0, level = 0, size = 0;
     for (int i = 0; i < 3; i++)
         longest = to[i] / BRICK - from[i] / BRICK > longest ? to[i] / BRICK - from[i] / BRICK : longest;
-    while (1u << level < longest)
+    if (longest > 0)
+        level = 1;
+    for (; 1u << size < longest; size++)
         level++;
-    for (int i = 0; i < 3; i++)
-        blocks[i] = hewn_sampling_blocks(s, i, level);
-    const float *nodes = (const float *)(const void *)(s->words + s->words[level]);
-    extent out = {INFINITY, -INFINITY, 0};
-    for (at[2] = from[2] / BRICK >> level; at[2] <= to[2] / BRICK >> level; at[2]++)
-        for (at[1] = from[1] / BRICK >> level; at[1] <= to[1] / BRICK >> level; at[1]++)
-            for (at[0] = from[0] / BRICK >> level; at[0] <= to[0] / BRICK >> level; at[0]++) {
-                const float *node = nodes + 3 * (at[0] + blocks[0] * (at[1] + (uint64_t)blocks[1] * at[2]));
-                out.least = node[0] < out.least ? node[0] : out.least;
-                out.greatest = node[1] > out.greatest ? node[1] : out.greatest;
-                out.steepest = node[2] > out.steepest ? node[2] : out.steepest;
-            }
-    return out;
+    uint64_t number = 0;
+    for (int i = 2; i >= 0; i--)
+        number = number * hewn_sampling_entries(s, i, level) + (from[i] / BRICK >> size);
+    const float *entry = (const float *)(const void *)(s->words + s->words[level]) + 3 * number;
+    return (extent){entry[0], entry[1], entry[2]};
 }
 
 /* What the least and the greatest sample say. `gap` is how far past the lattice the box begins and ends. */
