@@ -9,6 +9,7 @@
 #include "hewn/extract.h"
 #include "hewn/field.h"
 #include "hewn/file_job.h"
+#include "hewn/heights.h"
 #include "hewn/io.h"
 #include "hewn/job.h"
 #include "hewn/labels.h"
@@ -19,6 +20,8 @@
 #include "hewn/render.h"
 #include "hewn/render_job.h"
 #include "hewn/repair.h"
+#include "hewn/sampling.h"
+#include "hewn/sampling_io.h"
 #include "hewn/scene.h"
 #include "hewn/simplify.h"
 #include "hewn/smooth.h"
@@ -29,5 +32,7 @@
 #include "hewn/volume_extract.h"
 #include "hewn/volume_io.h"
 #include "hewn/volume_job.h"
+#include "hewn/voxelize.h"
+#include "hewn/voxelize_job.h"
 
 #endif

@@ -29,13 +29,14 @@ static const room rooms[] = {
     {"simplify", "base geom mesh"},
     {"field", "base geom"},
     {"lanes", "base field"},
+    {"voxelize", "base geom mesh field lanes"},
     {"gpu", "base"},
     {"eval", "base geom field gpu"},
     {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field lanes gpu eval"},
     {"scene", "base geom field"},
-    {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field lanes gpu eval iso render scene io"},
+    {"io", "base geom volume mesh field"},
+    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field lanes voxelize gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -75,6 +76,11 @@ static const header headers[] = {
     {"picture", "open"},
     {"render", "render"},
     {"render_job", "pipeline"},
+    {"sampling", "open"},
+    {"sampling_io", "io"},
+    {"heights", "io"},
+    {"voxelize", "voxelize"},
+    {"voxelize_job", "pipeline"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
