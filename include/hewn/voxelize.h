@@ -40,7 +40,9 @@ typedef struct hewn_mesh_sampling_report {
  * Kavan and Sorkine-Hornung 2013, 'Robust inside-outside segmentation using generalized winding numbers') is nearer to
  * a whole number other than 0; so a mesh may have holes, may pass through itself, and may be turned inside out as a
  * whole. Winding numbers of far parts are those of their dipoles (Barill and others 2018, 'Fast winding numbers for
- * soups and clouds'); near ones are exact. Polygons are cut into triangles. `*place` says where samples lie; `report`
+ * soups and clouds'); near ones are exact. Where it is in doubt, near holes, distances fade
+ * to 0 as the winding number nears a half, so that a hole is closed by a smooth membrane. Polygons are cut into
+ * triangles. `*place` says where samples lie; `report`
  * may be NULL. The same for any number of threads.
  *
  * HEWN_BAD_INPUT for polygons that cannot be used and for a mesh without faces; HEWN_LIMIT where the samples would take

@@ -60,9 +60,15 @@ static double off_whole(double winding)
     return fabs(winding - round(winding));
 }
 
+/* Where the mesh leaves no doubt, the distance with its sign. Across a hole, far from any face, the sign would jump: there
+ * the distance fades with the winding number's distance from a half, so that the field passes 0 as smoothly as that
+ * passes a half. It is never more than the distance. */
 static double signed_distance(const sample *s)
 {
-    return round(s->winding) != 0 ? -s->distance : s->distance;
+    double turns = fabs(s->winding);
+    if (off_whole(s->winding) < whole_enough || turns > 1)
+        return turns > 0.5 ? -s->distance : s->distance;
+    return s->distance * (1 - 2 * turns);
 }
 
 /* Next to `before`, which is a step away: what cannot have passed the surface on the way, which is closed as far as one
