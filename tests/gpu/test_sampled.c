@@ -137,15 +137,16 @@ static void lists_give_the_same_mesh(void **test_state)
         GPU_TEST_TRY(hewn_field_create(&field, &error));
         hewn_node root = make(&state->random, field, round, &size);
         for (int i = 0; i < 12; i++) {
-            hewn_node ball = hewn_translate(field, hewn_sphere(field, random_between(&state->random, 0.1, 0.4)),
-                                            random_between(&state->random, -2, 2),
-                                            random_between(&state->random, -2, 2),
-                                            random_between(&state->random, -2, 2));
+            hewn_node ball =
+                hewn_translate(field, hewn_sphere(field, random_between(&state->random, 0.1, 0.4)),
+                               random_between(&state->random, -2, 2), random_between(&state->random, -2, 2),
+                               random_between(&state->random, -2, 2));
             root = i % 3 ? hewn_union(field, root, ball)
                          : hewn_smooth_difference(field, root, ball, HEWN_BLEND_QUADRATIC, 0.1);
         }
         GPU_TEST_TRY(hewn_field_status(field, &error));
-        hewn_triangles straight = mesh_of(state, field, root, &(hewn_code_desc){.evaluation = HEWN_EVALUATION_STRAIGHT});
+        hewn_triangles straight =
+            mesh_of(state, field, root, &(hewn_code_desc){.evaluation = HEWN_EVALUATION_STRAIGHT});
         for (int whole = 0; whole < 2; whole++) {
             hewn_triangles listed = mesh_of(
                 state, field, root, &(hewn_code_desc){.evaluation = HEWN_EVALUATION_LISTED, .whole = whole != 0});

@@ -10,8 +10,8 @@ static void place(random_state *random, const hewn_sampling *s, double out[3])
 {
     for (int i = 0; i < 3; i++) {
         double half = 0.5 * s->cells[i];
-        out[i] = random_below(random, 8) == 0 ? random_between(random, -space, space)
-                                              : random_between(random, -half, half);
+        out[i] =
+            random_below(random, 8) == 0 ? random_between(random, -space, space) : random_between(random, -half, half);
         if (random_below(random, 6) == 0)
             out[i] = round(out[i] / 8) * 8; /* where bricks meet */
     }
@@ -124,8 +124,8 @@ static void outside_is_a_lower_bound(void **state)
         for (int k = 0; k < 3; k++)
             at[k] = random_between(&random, -2 * space, 2 * space);
         double value = hewn_sampling_value(s, at, NULL);
-        bool past = fabs(at[0]) > 0.5 * s->cells[0] || fabs(at[1]) > 0.5 * s->cells[1] ||
-                    fabs(at[2]) > 0.5 * s->cells[2];
+        bool past =
+            fabs(at[0]) > 0.5 * s->cells[0] || fabs(at[1]) > 0.5 * s->cells[1] || fabs(at[2]) > 0.5 * s->cells[2];
         for (int n = 0; n < INSIDE; n++)
             least = fmin(least, hypot(hypot(at[0] - inside[n][0], at[1] - inside[n][1]), at[2] - inside[n][2]));
         assert_true(!past || (value > 0 && value <= least * (double)fmaxf(1, s->steepest) * 1.0001));
