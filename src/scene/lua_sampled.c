@@ -54,8 +54,10 @@ static double number_option(lua_State *L, const char *name, const char *key, dou
 
 static double positive_option(lua_State *L, const char *name, const char *key, double missing)
 {
+    bool given = get_option(L, key);
+    lua_pop(L, 1);
     double value = number_option(L, name, key, missing);
-    if (value <= 0 && value != missing)
+    if (given && value <= 0)
         luaL_error(L, "%s: %s must be above 0, not %f", name, key, value);
     return value;
 }

@@ -60,9 +60,9 @@ static double off_whole(double winding)
     return fabs(winding - round(winding));
 }
 
-/* Where the mesh leaves no doubt, the distance with its sign. Across a hole, far from any face, the sign would jump: there
- * the distance fades with the winding number's distance from a half, so that the field passes 0 as smoothly as that
- * passes a half. It is never more than the distance. */
+/* Where the mesh leaves no doubt, the distance with its sign. Across a hole, far from any face, the sign would jump:
+ * there the distance fades with the winding number's distance from a half, so that the field passes 0 as smoothly as
+ * that passes a half. It is never more than the distance. */
 static double signed_distance(const sample *s)
 {
     double turns = fabs(s->winding);
@@ -173,7 +173,8 @@ static void fill_brick(sampler *own, uint64_t brick, void *context)
         hewn_voxel_point(&own->lattice, cells, at);
         sample s = sample_at(own, at, n > 0 ? &before : NULL, cell);
         samples[x + SIDE * (y + SIDE * z)] = (float)(signed_distance(&s) / cell);
-        if (s.distance <= HEWN_VOXEL_BAND * cell) {
+        /* A point on the surface itself is on neither side of it, which is no doubt. */
+        if (s.distance <= HEWN_VOXEL_BAND * cell && s.distance > 1e-4 * cell) {
             double off = off_whole(s.winding);
             doubts->sum += off < whole_enough ? 1 : 1 - 2 * off;
             doubts->doubtful += off_whole(s.winding) > doubtful_from;

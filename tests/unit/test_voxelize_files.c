@@ -130,7 +130,7 @@ static void meshes_come_back(void **state)
     const char *data = getenv("HEWN_DATA"), *source = getenv("HEWN_SOURCE");
     char mesh[1100], fallback[512];
     snprintf(fallback, sizeof fallback, "%s/../shared/data", source ? source : ".");
-    snprintf(mesh, sizeof mesh, "%.1000s/mesh-scan/bones.off", data ? data : fallback);
+    snprintf(mesh, sizeof mesh, "%.1000s/mesh-scan/elephant.off", data ? data : fallback);
     if (access(mesh, R_OK) != 0) {
         print_message("# no data in %s\n", mesh);
         skip();
@@ -144,7 +144,7 @@ static void meshes_come_back(void **state)
         hi = fmax(hi, model.positions[3 * i]);
     }
     hewn_model_destroy(&model);
-    double cell = (hi - lo) / 60;
+    double cell = (hi - lo) / 100;
     static const char *const outputs[] = {"scan.vdb", "scan.nrrd"};
     for (int i = 0; i < 2; i++) {
         hewn_voxelize_report made = voxelize(mesh, in_folder(outputs[i]), cell, false);
