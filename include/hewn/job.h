@@ -76,6 +76,8 @@ typedef struct hewn_report {
     size_t file_count;
     hewn_report_parameter *parameters;
     size_t parameter_count;
+    hewn_scene_sampled *sampled; /* files that the scene sampled */
+    size_t sampled_count;
     char units[16]; /* of the scene's coordinates, and so of the certificate's volume and area */
     hewn_device_info device;
     hewn_mesh_format format;

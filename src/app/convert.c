@@ -5,6 +5,7 @@
 #include "app/smooth_arguments.h"
 #include "app/volume_arguments.h"
 #include "app/volume_convert.h"
+#include "app/voxelize_arguments.h"
 #include "base/error.h"
 
 static const hewn_option options[] = {
@@ -21,6 +22,7 @@ static const hewn_option options[] = {
     HEWN_OPTION_TO,
     HEWN_OPTIONS_VOLUME,
     HEWN_OPTIONS_VOLUME_MESH,
+    HEWN_OPTIONS_VOXELIZE,
     HEWN_OPTION_REPORT,
     HEWN_OPTION_QUIET,
     HEWN_OPTION_HELP,
@@ -54,6 +56,11 @@ static void print(const hewn_file_job_desc *desc, const hewn_file_report *report
 /* What has a mesh's extension is one, whatever it begins with. */
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
+    hewn_error error = {0};
+    if (hewn_voxelize_wanted(arguments))
+        return hewn_voxelize_run(command, arguments);
+    if (hewn_voxelize_refuse(arguments, &error) != HEWN_OK)
+        return hewn_report_misuse(command, &error);
     if (hewn_label_arguments_any(arguments))
         return hewn_label_command_run(command, arguments);
     hewn_volume_format format;
@@ -82,7 +89,10 @@ const hewn_command hewn_command_convert = {
              "With --labels the volume is one of labels, and the surface of each is written:\n"
              "all are made at once, closed and manifold, and neighbours fit without a gap. A\n"
              ".glb file has a node a label, .obj and .ply an object; for a file a label name a\n"
-             "folder (-o DIR/) or a pattern (-o {name}.stl).\n",
+             "folder (-o DIR/) or a pattern (-o {name}.stl).\n"
+             "\n"
+             "A scene (.lua, .vm), or a mesh where the output is .vdb or .nrrd, is sampled into\n"
+             "a volume, as `hewn voxelize` does.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
@@ -92,6 +102,7 @@ const hewn_command hewn_command_convert = {
              "  hewn convert head.nii.gz --iso otsu -o head.stl\n"
              "  hewn convert ct/ --iso hu:bone --space lps -o bone.obj\n"
              "  hewn convert brain.nii.gz --labels all --names FreeSurferLUT.txt -o brain.glb\n"
+             "  hewn convert part.lua --cell 0.05 -o part.vdb\n"
              "  hewn convert seg.nrrd --labels 1,3 -o 'parts/{label}-{name}.stl'\n",
     .run = run,
 };

@@ -218,6 +218,12 @@ static void print_summary(const hewn_report *report)
             report->units[0] ? " " : "", report->units, report->seconds, report->device.name);
     if (report->simplified)
         hewn_simplify_print(&report->simplify);
+    for (size_t i = 0; i < report->sampled_count; i++)
+        if (report->sampled[i].is_mesh && report->sampled[i].doubtful > 0.01)
+            fprintf(stderr,
+                    "hewn: note: of %.1f %% of the samples at the surface of %s it is in doubt whether they are inside "
+                    "(confidence %.3f)\n",
+                    100 * report->sampled[i].doubtful, report->sampled[i].path, report->sampled[i].confidence);
     if (grid->left_bounds)
         fprintf(stderr, "hewn: note: the surface reaches the bounds and was %s there; wider --bounds keep it whole\n",
                 report->open ? "left open" : "closed with a flat cap");
