@@ -10,9 +10,7 @@
 static const hewn_option options[] = {
     HEWN_OPTION_OUTPUT,
     HEWN_OPTION_SIMPLIFY,
-    {0, "smooth", "METHOD",
-     "Smooth it on the way by taubin, laplacian, cotan, implicit, bilateral or hc with their defaults; `hewn "
-     "smooth` has their parameters."},
+    HEWN_OPTION_SMOOTH,
     HEWN_OPTIONS_LABELS,
     HEWN_OPTIONS_FRAME,
     {0, "from", "FORMAT",
@@ -40,7 +38,7 @@ static hewn_result read(const hewn_arguments *arguments, hewn_file_steps *steps,
     if (!method)
         return HEWN_OK;
     desc->smooth = &steps->smooth;
-    return hewn_smooth_method_parse(method, "--smooth", &steps->smooth.desc.method, error);
+    return hewn_smooth_spec_parse(method, "--smooth", &steps->smooth, error);
 }
 
 static void print(const hewn_file_job_desc *desc, const hewn_file_report *report)
@@ -48,7 +46,7 @@ static void print(const hewn_file_job_desc *desc, const hewn_file_report *report
     if (desc->simplify)
         hewn_simplify_print(&report->simplify);
     if (desc->smooth)
-        hewn_smooth_print(report);
+        hewn_smooth_print(&report->smooth, report->smooth_method);
 }
 
 /* What has a mesh's extension is one, whatever it begins with. */

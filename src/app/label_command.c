@@ -159,7 +159,11 @@ static hewn_result read_request(const hewn_arguments *arguments, request *out, h
     if (desc->relaxations > 10000)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--smooth-labels takes 0 to 10000, not '%s'", passes);
     if (method) {
-        HEWN_TRY(hewn_smooth_method_parse(method, "--smooth", &out->smooth.desc.method, error));
+        HEWN_TRY(hewn_smooth_spec_parse(method, "--smooth", &out->smooth, error));
+        if (out->smooth.lock_labels)
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                             "--smooth lock=labels is for meshes: between labels, vertices "
+                             "always move along the curves where these meet");
         desc->smooth = &out->smooth;
     }
     return read_volume(arguments, out, error);
