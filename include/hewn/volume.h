@@ -176,6 +176,24 @@ HEWN_API void hewn_volume_histogram_destroy(hewn_volume_histogram *histogram);
 HEWN_API hewn_result hewn_volume_find_percentile(const hewn_volume *volume, uint64_t frame, double percent, double *out,
                                                  hewn_error *error);
 
+/* --- bodies ------------------------------------------------------------------------------------------------------- */
+
+/* Which parts of what is in a volume to mesh. A body is a piece of what is inside, connected as the mesh is, with the
+ * cavities in it: its volume is what its hull encloses, less what its cavities do. In a cavity there may be more
+ * bodies; they count for themselves. First the largest are kept, then of these those that are large enough, then
+ * cavities are filled. */
+typedef struct hewn_body_choice {
+    uint64_t largest;    /* keep so many bodies, those of the greatest volume; 0: all */
+    double least_volume; /* and of these those of at least this volume, in the mesh's space; 0: all */
+    bool fill_cavities;  /* drop the walls of cavities, and the bodies in them, which are swallowed */
+} hewn_body_choice;
+
+typedef struct hewn_body_counts {
+    uint64_t bodies, cavities;           /* that there are; 0 where no choice was asked for */
+    uint64_t kept_bodies, kept_cavities; /* that are meshed */
+    double largest_volume;               /* of a body, in the mesh's space */
+} hewn_body_counts;
+
 /* --- smoothing ---------------------------------------------------------------------------------------------------- */
 
 typedef enum hewn_volume_filter {

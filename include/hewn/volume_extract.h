@@ -17,21 +17,6 @@ typedef enum hewn_inside {
     HEWN_INSIDE_BELOW    /* samples whose value is less than the iso value */
 } hewn_inside;
 
-/* Which parts of a surface to keep. A body is a piece of what is inside, connected as the mesh is, with the cavities in
- * it: its volume is what its hull encloses, less what its cavities do. In a cavity there may be more bodies; they count
- * for themselves. First the largest are kept, then of these those that are large enough, then cavities are filled. */
-typedef struct hewn_body_choice {
-    uint64_t largest;    /* keep so many bodies, those of the greatest volume; 0: all */
-    double least_volume; /* and of these those of at least this volume, in the mesh's space; 0: all */
-    bool fill_cavities;  /* drop the walls of cavities, and the bodies in them, which are swallowed */
-} hewn_body_choice;
-
-typedef struct hewn_body_counts {
-    uint64_t bodies, cavities;           /* of the whole surface; 0 where no choice was asked for */
-    uint64_t kept_bodies, kept_cavities; /* of the mesh */
-    double largest_volume;               /* of a body, in the mesh's space */
-} hewn_body_counts;
-
 /* Zero everywhere but `iso` is a sensible default. */
 typedef struct hewn_volume_extract_desc {
     uint64_t frame;

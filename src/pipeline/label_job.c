@@ -127,14 +127,14 @@ static hewn_result mesh(label_job *job, hewn_error *error)
                              .labels = desc->labels,
                              .label_count = desc->label_count,
                              .relaxations = desc->relaxations,
+                             .keep = desc->keep,
                              .progress = desc->progress};
     begin_stage(job);
     hewn_result result = hewn_labels_mesh(&job->volume, &label, &job->mesh, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
     job->report->relaxations = desc->relaxations;
-    job->report->vertices = job->mesh.vertex_count;
-    job->report->faces = job->mesh.triangle_count;
+    job->report->islands = job->mesh.islands;
     /* The samples are not looked at any more. */
     const hewn_unit *unit = desc->unit ? desc->unit : job->volume.unit;
     job->report->unit_assumed = !unit && job->volume.anatomical;
@@ -157,6 +157,21 @@ static hewn_result smooth(label_job *job, hewn_error *error)
     job->report->smoothed = true;
     job->report->smooth_method = desc.method;
     end_stage(job, "smooth");
+    return HEWN_OK;
+}
+
+static hewn_result simplify(label_job *job, hewn_error *error)
+{
+    if (!job->desc->simplify)
+        return HEWN_OK;
+    hewn_simplify_desc desc = *job->desc->simplify;
+    desc.labels = NULL;
+    desc.frozen = NULL;
+    desc.progress = job->desc->progress;
+    begin_stage(job);
+    HEWN_TRY(hewn_label_mesh_simplify(&job->mesh, &desc, &job->report->simplify, error));
+    job->report->simplified = true;
+    end_stage(job, "simplify");
     return HEWN_OK;
 }
 
@@ -400,6 +415,9 @@ static hewn_result run(label_job *job, hewn_error *error)
     HEWN_TRY(name_labels(job, error));
     HEWN_TRY(find_missing(job, error));
     HEWN_TRY(smooth(job, error));
+    HEWN_TRY(simplify(job, error));
+    job->report->vertices = job->mesh.vertex_count;
+    job->report->faces = job->mesh.triangle_count;
     HEWN_TRY(convert(job, error));
     HEWN_TRY(prove_all(job, error));
     return write_meshes(job, error);

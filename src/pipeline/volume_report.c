@@ -68,15 +68,8 @@ static void print_steps(hewn_json *json, const hewn_volume_report *report)
         hewn_json_number(json, "length", report->filter.length);
         hewn_json_end_object(json);
     }
-    if (bodies->bodies > 0) {
-        hewn_json_object(json, "bodies");
-        hewn_json_unsigned(json, "bodies", bodies->bodies);
-        hewn_json_unsigned(json, "cavities", bodies->cavities);
-        hewn_json_unsigned(json, "kept_bodies", bodies->kept_bodies);
-        hewn_json_unsigned(json, "kept_cavities", bodies->kept_cavities);
-        hewn_json_number(json, "largest_volume", bodies->largest_volume);
-        hewn_json_end_object(json);
-    }
+    if (bodies->bodies > 0)
+        hewn_json_bodies(json, "bodies", bodies);
     if (report->smoothed)
         hewn_smooth_json(json, report->smooth_method, &report->smooth);
     if (report->simplified)
