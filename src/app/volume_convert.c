@@ -238,12 +238,16 @@ static void print_notes(const hewn_volume_report *report)
 {
     if (report->remark)
         fprintf(stderr, "hewn: note: %s\n", report->remark);
-    if (report->box_shaped)
+    bool thin = report->dims[0] == 1 || report->dims[1] == 1 || report->dims[2] == 1;
+    if (report->box_shaped && thin)
+        fputs("hewn: note: the volume is one slice, so its surface is a sheet that is closed around it\n", stderr);
+    else if (report->box_shaped)
         fprintf(stderr,
                 "hewn: warning: most of the mesh is the cap at the volume's border, so it is hardly more than a box: "
-                "values are from %.9g to %.9g, and nearly all of those at the border are inside at %.9g; --iso otsu "
-                "finds another value, --inside the other side\n",
-                report->range.lo, report->range.hi, report->iso_value);
+                "values are from %.9g to %.9g, and most of those at the border are inside at %.9g; %s or "
+                "--inside may say better what is wanted\n",
+                report->range.lo, report->range.hi, report->iso_value,
+                report->iso.kind == HEWN_ISO_NUMBER ? "--iso otsu" : "another --iso");
     else if (report->extraction.cap_vertices > 0)
         fputs("hewn: note: the surface reaches the volume's border and was closed there with a flat cap; --open leaves "
               "it open\n",
