@@ -80,7 +80,11 @@ const hewn_command hewn_command_convert = {
              "With --labels the volume is one of labels, and the surface of each is written:\n"
              "all are made at once, closed and manifold, and neighbours fit without a gap. A\n"
              ".glb file has a node a label, .obj and .ply an object; for a file a label name a\n"
-             "folder (-o DIR/) or a pattern (-o {name}.stl).\n",
+             "folder (-o DIR/) or a pattern (-o {name}.stl).\n"
+             "\n"
+             "What is asked for besides is done in this order: --smooth-volume, --largest,\n"
+             "--min-volume, --fill-cavities, --smooth, --simplify. Lengths and volumes are in\n"
+             "the input's unit, which is mm for a patient.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
@@ -89,6 +93,8 @@ const hewn_command hewn_command_convert = {
              "  hewn convert scan.ply.gz -o - --to off | head -2\n"
              "  hewn convert head.nii.gz --iso otsu -o head.stl\n"
              "  hewn convert ct/ --iso hu:bone --space lps -o bone.obj\n"
+             "  hewn convert head.nii.gz --smooth-volume 1 --largest 1 --fill-cavities \\\n"
+             "    --smooth taubin:iterations=20 --simplify ratio:0.2 -o head.glb\n"
              "  hewn convert brain.nii.gz --labels all --names FreeSurferLUT.txt -o brain.glb\n"
              "  hewn convert seg.nrrd --labels 1,3 -o 'parts/{label}-{name}.stl'\n",
     .run = run,
