@@ -157,7 +157,7 @@ static void test_islands(void **state)
     (void)state;
     static lattice given, wanted;
     random_state random = {77};
-    uint32_t trials = getenv("HEWN_LONG") ? 3000 : 200;
+    uint32_t trials = getenv("HEWN_LONG") ? 3000 : 120;
     for (uint32_t trial = 0; trial < trials; trial++) {
         uint32_t labels = 1 + trial % 4;
         hewn_body_choice choice = {
@@ -192,7 +192,7 @@ static void test_one_piece(void **state)
     (void)state;
     static lattice given;
     random_state random = {5};
-    uint32_t trials = getenv("HEWN_LONG") ? 3000 : 150;
+    uint32_t trials = getenv("HEWN_LONG") ? 3000 : 80;
     hewn_body_choice choice = {.largest = 1, .fill_cavities = true};
     for (uint32_t trial = 0; trial < trials; trial++) {
         make_random(&random, &given, 1, 10);
