@@ -7,6 +7,7 @@
 #include "hewn/io.h"
 #include "hewn/scene.h"
 #include "hewn/simplify.h"
+#include "hewn/smooth.h"
 #include "hewn/triangles.h"
 
 #ifdef __cplusplus
@@ -36,10 +37,12 @@ typedef struct hewn_mesh_job_desc {
     bool open;       /* leave the surface open where it leaves the bounds */
     bool quads;      /* write faces of four corners: for a dual method, and a format that has polygons */
     double adaptive; /* how far triangles of dc may move where they are merged, scene units; 0: none are */
-    const hewn_simplify_desc *simplify; /* lengths in scene units; NULL: no simplification */
+    const hewn_smooth_desc *smooth;     /* lengths in scene units; its labels, freedom and progress are not looked at;
+                                           NULL: no smoothing */
+    const hewn_simplify_desc *simplify; /* after that; lengths in scene units; NULL: no simplification */
     /* Bytes that making the mesh may take, of the device and the host together, see hewn_extract_desc; the mesh is then
-     * made in parts, which wait on disk beside the output, and is the same. Not together with `adaptive` or `simplify`.
-     * 0: no limit. The driver and the program itself are not counted. */
+     * made in parts, which wait on disk beside the output, and is the same. Not together with `adaptive`, `smooth` or
+     * `simplify`. 0: no limit. The driver and the program itself are not counted. */
     uint64_t max_memory;
     const char *device; /* an index or a part of a name; NULL: HEWN_DEVICE from the environment, else the best */
     bool validation;    /* turn the validation layer on; its messages go to stderr and are counted in the report */
@@ -52,7 +55,7 @@ typedef struct hewn_mesh_job_desc {
 /* A stage of a job, in seconds since the job began. Stages may overlap. */
 typedef struct hewn_report_stage {
     char name[16]; /* startup, load, compile, prepare, cull or count, evaluate, extract, read_back, collapse, paint,
-                      simplify, certify, write, shutdown */
+                      smooth, simplify, certify, write, shutdown */
     double begin, end;
 } hewn_report_stage;
 
@@ -92,9 +95,13 @@ typedef struct hewn_report {
     bool labels;         /* and faces (GLB: vertices) labels, from the scene's paint */
     hewn_bounds_source bounds_source;
     hewn_extract_stats extraction; /* bounds, cells, counts of visited cells and bricks */
+    bool smoothed;
+    hewn_smooth_method smooth_method;
+    hewn_smooth_report smooth;
     bool simplified;
     hewn_simplify_report simplify;
-    hewn_certificate certificate; /* of the mesh that was written, with its max_residual (NaN where simplified) */
+    hewn_certificate
+        certificate; /* of the mesh that was written, with its max_residual (NaN where smoothed or simplified) */
     uint64_t vertices;
     uint64_t faces;               /* of the file: triangles or, where they were asked for, quads */
     uint64_t peak_host_bytes;     /* most memory that the process had resident so far */

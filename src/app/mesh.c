@@ -8,6 +8,7 @@
 #include "app/number.h"
 #include "app/scene_arguments.h"
 #include "app/simplify_arguments.h"
+#include "app/smooth_arguments.h"
 #include "app/sweep.h"
 #include "base/alloc.h"
 #include "base/error.h"
@@ -28,6 +29,7 @@ static const hewn_option options[] = {
      "Merge the triangles of dc to fewer and larger ones, as far as the surface moves by no more than ERROR, a length "
      "in "
      "the scene's units."},
+    HEWN_OPTION_SMOOTH,
     HEWN_OPTION_SIMPLIFY,
     {0, "bounds", "BOX",
      "Look for the surface in BOX = x0,y0,z0,x1,y1,z1. Default: the scene's own bounds, else found from the field."},
@@ -55,6 +57,7 @@ typedef struct mesh_request {
     hewn_mesh_job_desc desc;
     hewn_scene_arguments scene;
     hewn_box bounds;
+    hewn_file_smooth smooth;
     hewn_simplify_desc simplify;
     hewn_sweep sweep;
     bool quiet;
@@ -156,6 +159,18 @@ static hewn_result read_device(const hewn_arguments *arguments, mesh_request *re
     return HEWN_OK;
 }
 
+static hewn_result read_smooth(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
+{
+    const char *smooth = hewn_arguments_value(arguments, "smooth");
+    if (!smooth)
+        return HEWN_OK;
+    HEWN_TRY(hewn_smooth_spec_parse(smooth, "--smooth", &request->smooth, error));
+    if (request->smooth.lock_labels)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--smooth: labels of a scene cannot be locked");
+    request->desc.smooth = &request->smooth.desc;
+    return HEWN_OK;
+}
+
 static hewn_result read_request(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
 {
     HEWN_TRY(hewn_scene_arguments_read(arguments, &request->scene, error));
@@ -166,6 +181,7 @@ static hewn_result read_request(const hewn_arguments *arguments, mesh_request *r
     HEWN_TRY(hewn_simplify_target_read(arguments, &request->simplify, &simplify, error));
     request->simplify.measure = request->desc.report != NULL;
     request->desc.simplify = simplify ? &request->simplify : NULL;
+    HEWN_TRY(read_smooth(arguments, request, error));
     return read_device(arguments, request, error);
 }
 
@@ -216,6 +232,8 @@ static void print_summary(const hewn_report *report)
     fprintf(stderr, "\n  %llu x %llu x %llu cells of %.6g%s%s, %.2f s on %s\n", (unsigned long long)grid->cells[0],
             (unsigned long long)grid->cells[1], (unsigned long long)grid->cells[2], grid->cell,
             report->units[0] ? " " : "", report->units, report->seconds, report->device.name);
+    if (report->smoothed)
+        hewn_smooth_print(&report->smooth, report->smooth_method);
     if (report->simplified)
         hewn_simplify_print(&report->simplify);
     for (size_t i = 0; i < report->sampled_count; i++)

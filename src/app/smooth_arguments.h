@@ -20,8 +20,8 @@ hewn_result hewn_smooth_method_parse(const char *text, const char *option, hewn_
     {                                                                                                                  \
         0, "smooth", "METHOD",                                                                                         \
             "Smooth the mesh on the way by taubin, laplacian, cotan, implicit, bilateral or hc; METHOD:KEY=VALUE,... " \
-            "with what `hewn smooth` has: taubin:iterations=30,passband=0.05, implicit:step=0.5,volume=keep, "         \
-            "lock=boundary. Lengths are in the input's unit."                                                          \
+            "with what `hewn smooth` has, as in taubin:iterations=30,passband=0.05 or implicit:step=0.5,volume=keep. " \
+            "Lengths are in the input's unit."                                                                         \
     }
 
 /* A line or two on standard error of what was done. */

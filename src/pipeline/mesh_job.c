@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "geom/distinct.h"
 #include "hewn/job.h"
 #include "iso/grid.h"
 #include "pipeline/domain.h"
@@ -53,9 +54,10 @@ static hewn_result check_faces(const mesh_job *job, hewn_error *error)
     if (desc->adaptive > 0 && (!method || strcmp(method, hewn_method_name(HEWN_METHOD_DC)) != 0))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "only the triangles of dc can be merged, not those of %s",
                          method);
-    if (desc->simplify && desc->max_memory > 0)
+    if ((desc->smooth || desc->simplify) && desc->max_memory > 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "simplification needs the whole mesh in memory, so it excludes a limit of memory");
+                         "%s needs the whole mesh in memory, so it excludes a limit of memory",
+                         desc->smooth ? "smoothing" : "simplification");
     if (desc->simplify && desc->quads)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "simplified faces are triangles, not quads");
     if (desc->quads && !hewn_method_is_dual(desc->method))
@@ -190,6 +192,23 @@ static hewn_result find_paint(mesh_job *job, hewn_error *error)
     return HEWN_OK;
 }
 
+/* Vertices that smoothing and rounding bring together are moved apart again. */
+static hewn_result smooth(mesh_job *job, hewn_error *error)
+{
+    hewn_smooth_desc desc = *job->desc->smooth;
+    double begin = seconds_since(job->began);
+    desc.labels = NULL;
+    desc.freedom = NULL;
+    desc.progress = job->desc->progress;
+    HEWN_TRY(hewn_triangles_smooth(&job->triangles, &desc, &job->report->smooth, error));
+    HEWN_TRY(hewn_triangles_make_distinct(&job->triangles, NULL, error));
+    job->report->smoothed = true;
+    job->report->smooth_method = desc.method;
+    job->report->extraction.max_residual = NAN; /* was that of the cells' vertices */
+    hewn_report_add_stage(job->report, "smooth", begin, seconds_since(job->began));
+    return HEWN_OK;
+}
+
 static hewn_result simplify(mesh_job *job, hewn_error *error)
 {
     hewn_simplify_desc desc = *job->desc->simplify;
@@ -282,6 +301,8 @@ static hewn_result run(mesh_job *job, hewn_error *error)
         return result == HEWN_BAD_INPUT ? hewn_blame_input(result, desc->scene.path, error) : result;
     if (desc->max_memory == 0)
         HEWN_TRY(find_paint(job, error));
+    if (desc->smooth)
+        HEWN_TRY(smooth(job, error));
     if (desc->simplify)
         HEWN_TRY(simplify(job, error));
     HEWN_TRY(certify(job, error));

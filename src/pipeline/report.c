@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "pipeline/json_parts.h"
 #include "pipeline/simplify_step.h"
+#include "pipeline/smooth_step.h"
 
 void hewn_report_add_stage(hewn_report *report, const char *name, double begin, double end)
 {
@@ -216,6 +217,8 @@ static void print_extraction(hewn_json *json, const hewn_report *report)
         hewn_json_unsigned(json, "pair_merges", stats->pair_merges);
         hewn_json_end_object(json);
     }
+    if (report->smoothed)
+        hewn_smooth_json(json, report->smooth_method, &report->smooth);
     if (report->simplified)
         hewn_simplify_json(json, &report->simplify);
     hewn_json_unsigned(json, "validation_messages", report->validation_messages);

@@ -97,13 +97,37 @@ static void test_bad_input(void **state)
     run_folder_destroy(folder);
 }
 
+/* A scene's mesh, smoothed before it is written: proven all the same, and what cannot be is refused at once. */
+static void test_scenes(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    const char *scene = run_project_file("assets/scenes/csg.lua");
+    char *report = report_of(folder, (run_desc){.arguments = {"mesh", scene, "-o", "b.ply", "--res", "24", "--smooth",
+                                                              "laplacian:iterations=3,volume=keep"}});
+    assert_string_equal(json_string(report, "smooth.method"), "laplacian");
+    assert_true(json_number(report, "smooth.iterations") == 3);
+    double volume = json_number(report, "smooth.volume_before");
+    assert_true(volume > 0 && fabs(json_number(report, "smooth.volume_after") / volume - 1) < 1e-8);
+    assert_true(fabs(json_number(report, "certificate.volume") / volume - 1) < 1e-5);
+    assert_true(json_number(report, "smooth.area_after") < json_number(report, "smooth.area_before"));
+    assert_true(json_bool(report, "certificate.closed") && json_bool(report, "certificate.manifold"));
+    free(report);
+    static const char *const wrong[][3] = {{"none", NULL}, {"taubin:lock=labels", NULL}, {"taubin", "--max-memory=1G"}};
+    for (int i = 0; i < 3; i++) {
+        run_result result = run_in(
+            2, folder, (run_desc){.arguments = {"mesh", scene, "-o", "c.ply", "--smooth", wrong[i][0], wrong[i][1]}});
+        run_result_destroy(&result);
+        assert_false(run_file_exists(run_path(folder, "c.ply")));
+    }
+    run_folder_destroy(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_method),
-        cmocka_unit_test(test_locks_and_volume),
-        cmocka_unit_test(test_mask),
-        cmocka_unit_test(test_bad_input),
+        cmocka_unit_test(test_every_method), cmocka_unit_test(test_locks_and_volume), cmocka_unit_test(test_mask),
+        cmocka_unit_test(test_bad_input),    cmocka_unit_test(test_scenes),
     };
     return cmocka_run_group_tests_name("smooth", tests, NULL, NULL);
 }
