@@ -173,8 +173,8 @@ static hewn_result choose_blocks(hewn_code *code, hewn_error *error)
  * devices is the sum of all its kinds and of reading it (docs/performance.md). */
 enum { LISTED_FROM = 12, READING = 60, A_SLOT = 6 };
 
-/* More edges of outlines than this are walked over whatever else there is: each is the same code with other numbers, and
- * written out one by one they take longer to compile than lists take to run. */
+/* More edges of outlines than this are walked over whatever else there is: each is the same code with other numbers,
+ * and written out one by one they take longer to compile than lists take to run. */
 enum { LISTED_EDGES = 64 };
 
 static bool lists_pay(const hewn_code *code)

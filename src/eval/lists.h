@@ -61,7 +61,7 @@ const uint32_t *hewn_code_whole_list(const hewn_code *code);
 
 /* Lists of boxes, which are slots, and of the larger boxes that they were cut from. */
 typedef struct hewn_code_lists {
-    const hewn_buffer *lists, *ranges; /* a slot: first instruction in `lists`, and count */
+    const hewn_buffer *lists, *ranges;         /* a slot: first instruction in `lists`, and count */
     const hewn_buffer *around, *around_ranges; /* or NULL: that is the whole field's */
     const hewn_buffer *origins;                /* a slot: 64 times the larger box's number, and more */
 } hewn_code_lists;

@@ -50,8 +50,8 @@ static hewn_result create_vertices(hewn_extractor *extractor, hewn_method method
 {
     size_t bytes = sizeof(struct hewn_dual_vertex_push);
     const uint32_t near = hewn_extractor_flavour(extractor);
-    hewn_kernel_desc nets = {"nets_vertices", hewn_text_iso_head, hewn_text_nets_vertices, HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | near,
-                             (uint32_t)bytes};
+    hewn_kernel_desc nets = {"nets_vertices", hewn_text_iso_head, hewn_text_nets_vertices,
+                             HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | near, (uint32_t)bytes};
     hewn_kernel_desc dc = {"dual_vertices", hewn_text_iso_head, hewn_text_dual_vertices,
                            HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | near, (uint32_t)bytes};
     return hewn_code_program(extractor->device, extractor->code, method == HEWN_METHOD_NETS ? &nets : &dc,

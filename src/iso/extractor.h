@@ -73,9 +73,9 @@ void hewn_workspace_clear(hewn_workspace *workspace);
 typedef struct hewn_bricks {
     uint32_t count;
     uint32_t levels;
-    uint32_t top[3];                            /* blocks of the coarsest level */
-    uint32_t beyond; /* in: so many cells around the blocks above bricks lists of theirs are good for too */
-    const hewn_buffer *list;                    /* packed coordinates */
+    uint32_t top[3];         /* blocks of the coarsest level */
+    uint32_t beyond;         /* in: so many cells around the blocks above bricks lists of theirs are good for too */
+    const hewn_buffer *list; /* packed coordinates */
     const hewn_buffer *states[HEWN_MAX_LEVELS]; /* coarsest first */
 } hewn_bricks;
 
