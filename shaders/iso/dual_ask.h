@@ -1,7 +1,7 @@
 /* GLSL only: how a dual method's vertices ask the field, which may be in lists. Included after iso/dual_place.h.
  *
- * Where subgroups read lists together, neighbours want different ones: then they go through them all, least number first,
- * and each takes what it wanted. So all of a subgroup must come here together. */
+ * Where subgroups read lists together, neighbours want different ones: then they go through them all, least number
+ * first, and each takes what it wanted. So all of a subgroup must come here together. */
 #include "iso/together.h"
 
 #ifdef FIELD_LISTED
@@ -17,8 +17,8 @@ bool encloses(uvec3 first, uvec3 last, vec3 place)
     return all(greaterThanEqual(place, sample_place(first))) && all(lessThanEqual(place, sample_place(last)));
 }
 
-/* The shortest list that is good for a place near the brick: what a brick's own leaves out matters nowhere in the brick,
- * but perhaps elsewhere. */
+/* The shortest list that is good for a place near the brick: what a brick's own leaves out matters nowhere in the
+ * brick, but perhaps elsewhere. */
 uint list_for(uint slot, vec3 place)
 {
     uvec3 brick = unpack_brick(push.bricks.at[slot]), block = brick / HEWN_LEVEL_RATIO;
