@@ -51,6 +51,8 @@ void main()
         uvec3 first, last;
         blocks[k] = block_at(begin + k - past, dense, push.parents);
         block_samples(blocks[k], first, last);
+        first = max(first, push.beyond) - push.beyond;
+        last = min(last + push.beyond, grid_cells());
         first_choice[k] = choices_at + (k - past) * stride;
         x[k] = vec2(sample_coordinate(push.grid, 0u, first.x), sample_coordinate(push.grid, 0u, last.x));
         y[k] = vec2(sample_coordinate(push.grid, 1u, first.y), sample_coordinate(push.grid, 1u, last.y));

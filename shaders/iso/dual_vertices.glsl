@@ -14,6 +14,8 @@ layout(push_constant, scalar) uniform Push
 
 #include "iso/dual_search.h"
 
+#include "iso/dual_ask.h"
+
 /* What a vertex is at: each phase asks the field, and what it is told decides on the next one. */
 const uint SOLVE = 0u; /* where all planes meet, and the ends of an edge there */
 const uint LEAVE = 1u; /* a corner beyond a face of the cell */
@@ -124,12 +126,12 @@ uint react(inout Search search, Cell cell, Qef solved, uint questions)
 
 /* Loops that share a cell are not asked for planes that no crossing saw, or two would come to one corner; and where they are
  * not on the surface they stay at the mean of their crossings, or they would get in each other's way. */
-Search place_vertex(uint slot, Cell cell, bool alone, vec3 usual)
+Search place_vertex(uint slot, Cell cell, bool alone, bool there, vec3 usual)
 {
     bool shared_cell = !alone;
-    Search search = Search(SOLVE, qef_count, 0u, 0u, uvec3(0u), vec3(0.0), vec3(0.0), alone, vec3(0.0),
+    Search search = Search(there ? SOLVE : DONE, qef_count, 0u, 0u, uvec3(0u), vec3(0.0), vec3(0.0), alone, vec3(0.0),
                            vec4(0.0, 0.0, 0.0, 3.0e38), 0u, 0u, false, false);
-    for (uint trial = 0u; trial < 16u && search.phase != DONE; trial++) {
+    for (uint trial = 0u; trial < 16u && somebody(search.phase != DONE); trial++) {
         Qef solved;
         bool pairs = search.phase == PAIR;
         qef_taken = pairs ? search.sets[search.pair] | search.sets[(search.pair + 1u) % 3u] : 0xFFFFFFFFu;
@@ -138,13 +140,11 @@ Search place_vertex(uint slot, Cell cell, bool alone, vec3 usual)
             solved = qef_solve(cell.lo, cell.hi);
             asked[0] = solved.at;
         }
-        uint questions = ask(search, cell, solved);
-        for (uint i = 0u; i < questions; i++) {
-            /* A brick's own part of the field is all that matters in the brick, and only there. */
-            bool within = asked[i] == clamp(asked[i], 0.0, 1.0);
-            field_select(within ? slot : FIELD_WHOLE);
-            told[i] = surface_from(out_of_cell(cell, asked[i]));
-        }
+        uint questions = search.phase == DONE ? 0u : ask(search, cell, solved);
+        for (uint i = 0u; somebody(i < questions); i++)
+            told[i] = surface_asked(slot, out_of_cell(cell, asked[i]), i < questions);
+        if (search.phase == DONE)
+            continue; /* others of its subgroup are still at it */
         bool settled = search.phase == SHARP;
         uint next = react(search, cell, solved, questions);
         if (next == SHARP)
@@ -164,10 +164,12 @@ Search place_vertex(uint slot, Cell cell, bool alone, vec3 usual)
 
 void main()
 {
+    /* Nobody leaves, see iso/dual_ask.h: those past the end are at an empty loop. */
     uint vertex = invocation();
-    if (vertex >= push.count)
-        return;
-    DualRecord record = dual_record(push.positions, vertex);
+    bool there = vertex < push.count;
+    DualRecord record = DualRecord(0u, uvec3(0u), 0u, 1u);
+    if (there)
+        record = dual_record(push.positions, vertex);
     Cell cell = cell_of(record);
     vec3 along = vec3(0.0);
     float count = 0.0;
@@ -182,7 +184,9 @@ void main()
         along += normal;
         count += 1.0;
     }
-    Search placed = place_vertex(record.slot, cell, record.loops == 1u, along / max(length(along), 1.0e-6));
+    Search placed = place_vertex(record.slot, cell, record.loops == 1u, there, along / max(length(along), 1.0e-6));
+    if (!there)
+        return;
     vec3 place = out_of_cell(cell, placed.at);
     write_vertex(vertex, place, vertex_normal(placed.seen, along, count));
     count_vertex(placed.seen.w, capped);

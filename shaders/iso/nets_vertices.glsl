@@ -10,12 +10,16 @@ layout(push_constant, scalar) uniform Push
 
 #include "iso/dual_place.h"
 
+#include "iso/dual_ask.h"
+
 void main()
 {
+    /* Nobody leaves, see iso/dual_ask.h: those past the end are at an empty loop. */
     uint vertex = invocation();
-    if (vertex >= push.count)
-        return;
-    DualRecord record = dual_record(push.positions, vertex);
+    bool there = vertex < push.count;
+    DualRecord record = DualRecord(0u, uvec3(0u), 0u, 1u);
+    if (there)
+        record = dual_record(push.positions, vertex);
     Cell cell = cell_of(record);
     vec3 sum = vec3(0.0), along = vec3(0.0);
     float count = 0.0;
@@ -30,8 +34,9 @@ void main()
         count += 1.0;
     }
     vec3 place = out_of_cell(cell, clamp(sum / count, cell.lo, cell.hi));
-    field_select(record.slot);
-    vec4 seen = surface_from(place);
+    vec4 seen = surface_asked(record.slot, place, there);
+    if (!there)
+        return;
     write_vertex(vertex, place, vertex_normal(seen, along, count));
     count_vertex(seen.w, capped);
 }

@@ -2,6 +2,7 @@
  * cells, which walks down a tree of boxes: the block, its halves, cells, and the parts of cells. A box that excludes
  * surface is left with all that is in it; a cell of which a smallest part does not is a suspect. */
 #include "iso/grid.h"
+#include "iso/together.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
@@ -124,13 +125,6 @@ void add_to(uint which, uint count)
     if (before + count < before)
         atomicAdd(push.counts.at[which + 1u], 1u);
 }
-
-/* Subgroups that read a list together stay until the last one is done. */
-#ifdef FIELD_TOGETHER
-#define somebody(condition) subgroupAny(condition)
-#else
-#define somebody(condition) (condition)
-#endif
 
 void main()
 {

@@ -2,6 +2,7 @@
  * a brick at once, so that one walk over its list serves them all. */
 #include "iso/grid.h"
 #include "iso/root_search.h"
+#include "iso/together.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
@@ -19,12 +20,6 @@ struct Edge {
 };
 
 Edge edges[4];
-
-#ifdef FIELD_TOGETHER
-#define all_agree(condition) subgroupAll(condition)
-#else
-#define all_agree(condition) (condition)
-#endif
 
 /* Past the end any edge will do: what comes of it is not used. */
 void load_edge(uint vertex, uint end, uvec3 base, out Edge edge)
@@ -63,7 +58,7 @@ void solve(vec4 at_start, vec4 at_end, uint count)
         searches[k] = search_begin(edges[k].start[edges[k].axis], edges[k].end, at_start[k], at_end[k],
                                    k >= count);
     bool settled = false;
-    for (uint trial = 0u; trial < MOST_TRIALS && !all_agree(settled); trial++) {
+    for (uint trial = 0u; trial < MOST_TRIALS && !everybody(settled); trial++) {
         vec3 at[4];
         for (uint k = 0u; k < 4u; k++) {
             next_guess(searches[k], trial);

@@ -277,7 +277,7 @@ struct hewn_dual_spread_push {
 struct hewn_dual_vertex_push {
     HEWN_GRID grid;
     HEWN_UINT count;
-    HEWN_UINT pad;
+    HEWN_UINT beyond; /* as in hewn_choose_push, of the blocks above bricks */
     HEWN_UINTS bricks;
     HEWN_UINTS links;
     HEWN_UINTS edges;

@@ -11,7 +11,7 @@ struct hewn_choose_push {
     HEWN_UINT size;
     HEWN_UINT dense[3]; /* the top level tests all of these blocks; elsewhere 0 */
     HEWN_UINT tested;
-    HEWN_UINT pad;
+    HEWN_UINT beyond;         /* cells around each block for which its list is good too */
     HEWN_UINTS parents;       /* packed coordinates */
     HEWN_UINTS parent_ranges; /* of their lists; none on the top level, where it is the whole field's */
     HEWN_UINTS states;        /* out, a block tested: a stand-in, or 0 where it is kept */

@@ -363,11 +363,19 @@ const uint32_t *hewn_code_whole_list(const hewn_code *code)
     return code->instructions.entries;
 }
 
-void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_buffer *ranges)
+static uint64_t address_of(const hewn_buffer *buffer)
+{
+    return buffer ? buffer->address : 0;
+}
+
+void hewn_code_use_lists(hewn_code *code, const hewn_code_lists *lists)
 {
     hewn_list_block *block = code->uniforms.mapped;
-    block->lists = lists->address;
-    block->ranges = ranges->address;
+    block->lists = address_of(lists->lists);
+    block->ranges = address_of(lists->ranges);
+    block->around = address_of(lists->around);
+    block->around_ranges = address_of(lists->around_ranges);
+    block->origins = address_of(lists->origins);
 }
 
 /* --- kernels ----------------------------------------------------------------------------------------------------- */
@@ -399,7 +407,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
         hewn_instruction_set_declare(&code->instructions.set, &how, text);
     } else {
         write_parameter_block(code, text);
-        hewn_text_append(text, "const uint FIELD_WHOLE = 0xFFFFFFFFu;\nvoid field_select(uint slot)\n{\n}\n"
+        hewn_text_append(text, "void field_select(uint list)\n{\n}\n"
                                "void field_narrow(vec2 x, vec2 y, vec2 z, bool matters, uint least)\n{\n}\n");
     }
     hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_POINT, text);

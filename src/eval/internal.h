@@ -22,7 +22,7 @@ typedef enum hewn_number_place {
 
 /* The uniforms of listed code, as hewn_instruction_set_declare() has them. */
 typedef struct hewn_list_block {
-    uint64_t numbers, whole, lists, ranges;
+    uint64_t numbers, whole, lists, ranges, around, around_ranges, origins;
     uint32_t whole_count, pad;
 } hewn_list_block;
 

@@ -30,7 +30,7 @@ static const walk interval_walk = {.type = "vec2", .bools = "bvec2", .flavour = 
 static const walk choice_walk = {.type = "vec2", .bools = "bvec2", .flavour = 1, .values = 4, .purpose = CHOOSES};
 static const walk narrow_walk = {
     .type = "vec2", .bools = "bvec2", .flavour = 1, .values = 1, .purpose = NARROWS, .repeated = true};
-static const walk gradient_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2, .values = 1};
+static const walk gradient_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2, .values = 1, .repeated = true};
 static const walk gradients_walk = {.type = "vec4", .bools = "bvec4", .flavour = 2, .values = 4, .repeated = true};
 
 /* --- fetching ---------------------------------------------------------------------------------------------------- */
@@ -443,24 +443,30 @@ void hewn_instruction_set_declare(const hewn_instruction_set *set, const hewn_wa
         hewn_text_append(text, "#define FIELD_TOGETHER\n");
     hewn_text_print(
         text,
+        "#define FIELD_LISTED\n"
         "layout(buffer_reference, std430, buffer_reference_align = 4) buffer hewn_words { uint at[]; };\n"
         "layout(set = 0, binding = 0) uniform hewn_list_block { uvec2 hewn_numbers_at, hewn_whole, hewn_lists, "
-        "hewn_ranges; uint hewn_whole_count; };\n"
+        "hewn_ranges, hewn_around, hewn_around_ranges, hewn_origins; uint hewn_whole_count; };\n"
         "#define FIELD_WORDS %uu\n"
         "uvec2 field_list = hewn_whole;\n"
         "uint field_kept_from = 0xFFFFFFFFu;\n"
         "uint field_begin = 0u, field_end = hewn_whole_count;\n"
-        "const uint FIELD_WHOLE = 0xFFFFFFFFu;\n"
-        "void field_select(uint slot)\n{\n"
+        "const uint FIELD_WHOLE = 0xFFFFFFFFu, FIELD_AROUND = 0x80000000u;\n"
+        "uint field_around(uint slot)\n{\n"
+        "uint list = FIELD_AROUND | hewn_words(hewn_origins).at[slot] >> 6;\n"
+        "return hewn_around == uvec2(0u) ? FIELD_WHOLE : list;\n}\n"
+        "void field_select(uint list)\n{\n"
         "field_kept_from = 0xFFFFFFFFu;\n"
         "field_list = hewn_whole;\n"
         "field_begin = 0u;\n"
         "field_end = hewn_whole_count;\n"
-        "if (slot != FIELD_WHOLE) {\n"
-        "hewn_words ranges = hewn_words(hewn_ranges);\n"
-        "field_list = hewn_lists;\n"
-        "field_begin = ranges.at[2u * slot];\n"
-        "field_end = field_begin + ranges.at[2u * slot + 1u];\n}\n}\n",
+        "if (list != FIELD_WHOLE) {\n"
+        "bool around = list >= FIELD_AROUND;\n"
+        "hewn_words ranges = hewn_words(around ? hewn_around_ranges : hewn_ranges);\n"
+        "uint at = 2u * (list & ~FIELD_AROUND);\n"
+        "field_list = around ? hewn_around : hewn_lists;\n"
+        "field_begin = ranges.at[at];\n"
+        "field_end = field_begin + ranges.at[at + 1u];\n}\n}\n",
         set->words);
 }
 
@@ -468,7 +474,7 @@ void hewn_instruction_set_write(const hewn_instruction_set *set, const hewn_walk
                                 hewn_text *text)
 {
     const uint32_t many = HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_ROW;
-    if (how->together && flavours & (many | HEWN_FLAVOUR_INTERVAL))
+    if (how->together && flavours & (many | HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_GRADIENT))
         write_keeping(set, how, text);
     if (flavours & many)
         write_narrowing(set, how, text);

@@ -2,8 +2,9 @@
  * one for each box that somebody prunes for.
  *
  * A kernel calls field_select(slot) to evaluate the list of a box that hewn_code_use_lists() named; before that it is
- * the whole field's, and so it is again after field_select(FIELD_WHOLE). Straight code has a field_select() that does
- * nothing, so kernels need not know which it is.
+ * the whole field's, and so it is again after field_select(FIELD_WHOLE); field_select(field_around(slot)) takes that of
+ * the larger box which the slot's was cut from. Straight code has a field_select() that does nothing, so most kernels
+ * need not know which it is; where they do, `FIELD_LISTED` is defined.
  *
  * Pruning drops an operand of a min, max or blend where bounds show that the arithmetic returns the other operand's
  * bits, so every list gives the same bits in its box as the whole field. With HEWN_FLAVOUR_CHOICES a kernel has
@@ -58,7 +59,14 @@ const uint32_t *hewn_code_whole_list(const hewn_code *code);
 /* Bytes that a list's buffer has past its end: what is read together may reach beyond the last instruction. */
 #define HEWN_LIST_SLACK 64u
 
-/* From the next submit on, slots are those of `ranges` (two words each: first instruction and count) in `lists`. */
-void hewn_code_use_lists(hewn_code *code, const hewn_buffer *lists, const hewn_buffer *ranges);
+/* Lists of boxes, which are slots, and of the larger boxes that they were cut from. */
+typedef struct hewn_code_lists {
+    const hewn_buffer *lists, *ranges;         /* a slot: first instruction in `lists`, and count */
+    const hewn_buffer *around, *around_ranges; /* or NULL: that is the whole field's */
+    const hewn_buffer *origins;                /* a slot: 64 times the larger box's number, and more */
+} hewn_code_lists;
+
+/* Used from the next submit on. */
+void hewn_code_use_lists(hewn_code *code, const hewn_code_lists *lists);
 
 #endif

@@ -9,6 +9,8 @@
 #include "iso/host_lists.h"
 #include "shared/lists.h"
 
+enum { BRICK = 8 }; /* cells along a side */
+
 typedef struct list_level {
     uint32_t number, tested, kept; /* 0 is the coarsest */
     uint32_t size;                 /* cells along a block's side */
@@ -25,6 +27,7 @@ typedef struct list_run {
     hewn_buffer *totals, *results;
     uint32_t top[3];
     bool at_top;
+    uint32_t beyond; /* see hewn_bricks */
     list_level level, above;
 } list_run;
 
@@ -69,6 +72,7 @@ static void record_choose(const list_run *run, hewn_commands *commands)
     struct hewn_choose_push push = {.grid = *run->grid,
                                     .size = level->size,
                                     .tested = level->tested,
+                                    .beyond = level->size > BRICK ? run->beyond : 0,
                                     .parents = address_of(run->above.list),
                                     .parent_ranges = address_of(run->above.ranges),
                                     .states = level->states->address,
@@ -186,7 +190,12 @@ static hewn_result make_lists(list_run *run, uint64_t instructions, hewn_error *
         record_keep(run, level->kept, commands);
         HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
     }
-    hewn_code_use_lists(run->extractor->code, level->instructions, level->ranges);
+    hewn_code_lists lists = {.lists = level->instructions, .ranges = level->ranges, .origins = level->origins};
+    if (!run->at_top) {
+        lists.around = run->above.instructions;
+        lists.around_ranges = run->above.ranges;
+    }
+    hewn_code_use_lists(run->extractor->code, &lists);
     return HEWN_OK;
 }
 
@@ -195,6 +204,7 @@ hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct
                                    hewn_error *error)
 {
     list_run run = {.extractor = extractor, .grid = grid, .region = region, .workspace = workspace, .at_top = true};
+    run.beyond = out->beyond;
     uint32_t size = hewn_grid_levels(grid, &out->levels, run.top);
     uint64_t count = (uint64_t)run.top[0] * run.top[1] * run.top[2];
     uint64_t words = (hewn_code_instruction_count(extractor->code) + 15) / 16 * count;

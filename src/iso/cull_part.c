@@ -115,7 +115,7 @@ hewn_result hewn_bricks_cull_part(const hewn_extractor *extractor, const struct 
                                   hewn_error *error)
 {
     hewn_result result;
-    *out = (hewn_bricks){0};
+    *out = (hewn_bricks){.beyond = out->beyond};
     if (hewn_code_is_listed(extractor->code)) {
         result = hewn_bricks_cull_lists(extractor, grid, region, workspace, out, error);
     } else {

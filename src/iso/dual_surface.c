@@ -50,10 +50,10 @@ static hewn_result create_vertices(hewn_extractor *extractor, hewn_method method
 {
     size_t bytes = sizeof(struct hewn_dual_vertex_push);
     const uint32_t near = hewn_extractor_flavour(extractor);
-    hewn_kernel_desc nets = {"nets_vertices", hewn_text_iso_head, hewn_text_nets_vertices, HEWN_FLAVOUR_GRADIENT | near,
-                             (uint32_t)bytes};
+    hewn_kernel_desc nets = {"nets_vertices", hewn_text_iso_head, hewn_text_nets_vertices,
+                             HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | near, (uint32_t)bytes};
     hewn_kernel_desc dc = {"dual_vertices", hewn_text_iso_head, hewn_text_dual_vertices,
-                           HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT | near, (uint32_t)bytes};
+                           HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | near, (uint32_t)bytes};
     return hewn_code_program(extractor->device, extractor->code, method == HEWN_METHOD_NETS ? &nets : &dc,
                              vertex_program(&extractor->dual, method), error);
 }
@@ -264,6 +264,7 @@ static void record_vertices(const emission *run, hewn_method method, hewn_comman
         uint64_t count = ends[i + 1] - ends[i], summary = (uint64_t)4 * HEWN_SUMMARY_WORDS * (i == 0 ? 0 : 2);
         struct hewn_dual_vertex_push vertices = {.grid = *run->grid,
                                                  .count = (uint32_t)count,
+                                                 .beyond = run->bricks->beyond,
                                                  .bricks = run->bricks->list->address,
                                                  .links = surface->links->address,
                                                  .edges = surface->edges->address,

@@ -225,7 +225,7 @@ static hewn_result classify(hewn_extraction *run, const hewn_bricks *bricks, hew
 
 static hewn_result run_stages(hewn_extraction *run, hewn_triangles *out, hewn_error *error)
 {
-    hewn_bricks bricks = {0};
+    hewn_bricks bricks = {.beyond = run->method == HEWN_METHOD_DC ? HEWN_DUAL_BEYOND : 0};
     hewn_surface surface = {0};
     double start = hewn_clock_now();
     HEWN_TRY(hewn_bricks_cull(run->extractor, &run->grid, &run->workspace, &bricks, error));

@@ -79,8 +79,9 @@ hewn_result hewn_workspace_read(hewn_workspace *workspace, const hewn_buffer *bu
 typedef struct hewn_bricks {
     uint32_t count;
     uint32_t levels;
-    uint32_t top[3];                            /* blocks of the coarsest level */
-    const hewn_buffer *list;                    /* packed coordinates */
+    uint32_t top[3];         /* blocks of the coarsest level */
+    uint32_t beyond;         /* in: so many cells around the blocks above bricks lists of theirs are good for too */
+    const hewn_buffer *list; /* packed coordinates */
     const hewn_buffer *states[HEWN_MAX_LEVELS]; /* coarsest first */
 } hewn_bricks;
 
@@ -191,6 +192,9 @@ hewn_result hewn_suspects_find(const hewn_extractor *extractor, const struct hew
 /* Makes what such a method needs, if it is not there yet; and lets go of it. */
 hewn_result hewn_dual_prepare(hewn_extractor *extractor, hewn_method method, hewn_error *error);
 void hewn_dual_clear(hewn_extractor *extractor);
+
+/* Dual contouring asks the field up to so many cells away from a vertex's cell. */
+enum { HEWN_DUAL_BEYOND = 2 };
 
 /* Takes the place of hewn_surface_classify(). */
 hewn_result hewn_dual_classify(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,

@@ -116,6 +116,7 @@ hewn_result hewn_part_open(hewn_extraction *run, const hewn_region *region, bool
     hewn_part *part = out;
     const hewn_extractor *extractor = run->extractor;
     *part = (hewn_part){.region = *region};
+    part->bricks.beyond = run->method == HEWN_METHOD_DC ? HEWN_DUAL_BEYOND : 0;
     HEWN_TRY(hewn_bricks_cull_part(extractor, &run->grid, region, &run->workspace, &part->bricks, error));
     if (part->bricks.count == 0)
         return HEWN_OK;

@@ -188,9 +188,10 @@ static void test_list_kernels(void **state)
     (void)state;
     CHECK(hewn_choose_push, GRID(hewn_choose_push), MEMBER(hewn_choose_push, size, NUMBER),
           MEMBER(hewn_choose_push, dense[0], NUMBER), MEMBER(hewn_choose_push, dense[2], NUMBER),
-          MEMBER(hewn_choose_push, tested, NUMBER), MEMBER(hewn_choose_push, parents, ADDRESS),
-          MEMBER(hewn_choose_push, parent_ranges, ADDRESS), MEMBER(hewn_choose_push, states, ADDRESS),
-          MEMBER(hewn_choose_push, flags, ADDRESS), MEMBER(hewn_choose_push, choices, ADDRESS));
+          MEMBER(hewn_choose_push, tested, NUMBER), MEMBER(hewn_choose_push, beyond, NUMBER),
+          MEMBER(hewn_choose_push, parents, ADDRESS), MEMBER(hewn_choose_push, parent_ranges, ADDRESS),
+          MEMBER(hewn_choose_push, states, ADDRESS), MEMBER(hewn_choose_push, flags, ADDRESS),
+          MEMBER(hewn_choose_push, choices, ADDRESS));
     CHECK(hewn_gather_push, MEMBER(hewn_gather_push, dense[0], NUMBER), MEMBER(hewn_gather_push, tested, NUMBER),
           MEMBER(hewn_gather_push, parents, ADDRESS), MEMBER(hewn_gather_push, states, ADDRESS),
           MEMBER(hewn_gather_push, ranks, ADDRESS), MEMBER(hewn_gather_push, kept, ADDRESS),
@@ -226,8 +227,8 @@ static void test_dual_kernels(void **state)
           A(hewn_dual_spread_push, quad_bases), A(hewn_dual_spread_push, points), A(hewn_dual_spread_push, positions),
           A(hewn_dual_spread_push, passed), A(hewn_dual_spread_push, indices));
     CHECK(hewn_dual_vertex_push, GRID(hewn_dual_vertex_push), N(hewn_dual_vertex_push, count),
-          A(hewn_dual_vertex_push, bricks), A(hewn_dual_vertex_push, links), A(hewn_dual_vertex_push, edges),
-          A(hewn_dual_vertex_push, points), A(hewn_dual_vertex_push, point_normals),
+          N(hewn_dual_vertex_push, beyond), A(hewn_dual_vertex_push, bricks), A(hewn_dual_vertex_push, links),
+          A(hewn_dual_vertex_push, edges), A(hewn_dual_vertex_push, points), A(hewn_dual_vertex_push, point_normals),
           A(hewn_dual_vertex_push, positions), A(hewn_dual_vertex_push, normals), A(hewn_dual_vertex_push, summary));
     CHECK(hewn_dual_quad_push, GRID(hewn_dual_quad_push), N(hewn_dual_quad_push, count), N(hewn_dual_quad_push, keep),
           A(hewn_dual_quad_push, bricks), A(hewn_dual_quad_push, links), A(hewn_dual_quad_push, passed),
