@@ -24,7 +24,8 @@ typedef struct stream {
 static uint64_t kept_bytes(const stream *of)
 {
     uint64_t table = ((uint64_t)of->slices + 1) * sizeof *of->before;
-    return of->samples + table + (of->sink->bytes ? of->sink->bytes(of->sink->user, NULL) : 0);
+    uint64_t patches = of->run.table.count * sizeof *of->run.table.words;
+    return of->samples + table + patches + (of->sink->bytes ? of->sink->bytes(of->sink->user, NULL) : 0);
 }
 
 /* Samples that a slab looks at: normals reach one slice farther than edges. */
