@@ -27,6 +27,7 @@ typedef struct hewn_volume_extract_desc {
     bool no_normals;     /* leave them out */
     const double *place; /* 16 numbers, row by row: from (i, j, k, 1) to the mesh's space; NULL: to_world */
     const hewn_body_choice *keep;  /* NULL: everything. Not with `open`, where there is no inside to tell apart */
+    uint64_t max_memory;           /* for hewn_volume_extract_parts(): bytes that it may take; 0: no limit */
     const hewn_progress *progress; /* or NULL; the stage is "extract" */
 } hewn_volume_extract_desc;
 
@@ -38,7 +39,11 @@ typedef struct hewn_volume_extract_stats {
     uint64_t decided_cells; /* of these: where values decided how the surface is connected */
     uint64_t cap_vertices;  /* that lie on the bounds because the surface was cut there */
     hewn_body_counts bodies;
-    hewn_extract_stage stages[5]; /* signs, count, vertices, triangles, bodies; seconds from the begin of the call */
+    uint64_t vertices, triangles; /* of the mesh */
+    uint64_t parts;               /* that it came in; 0 where it was made at once */
+    uint64_t peak_memory;         /* of parts: most bytes in use, as max_memory counts them */
+    hewn_extract_stage stages[5]; /* signs, count, vertices, triangles, bodies, or for parts count,
+                                     extract; seconds from the begin of the call */
     uint32_t stage_count;
 } hewn_volume_extract_stats;
 
@@ -63,6 +68,15 @@ typedef struct hewn_volume_extract_stats {
  * HEWN_CANCELLED. `stats` may be NULL. Safe from several threads at once. */
 HEWN_API hewn_result hewn_volume_extract(const hewn_volume *volume, const hewn_volume_extract_desc *desc,
                                          hewn_triangles *out, hewn_volume_extract_stats *stats, hewn_error *error);
+
+/* The same mesh in parts, slabs of slices (along k): vertices and triangles of each are runs of the whole's. Two passes
+ * go over the samples, counting first. A slab takes its signs (a bit a sample), 24 bytes a row, its vertices and
+ * triangles, and what the sink takes; and where samples are left in a file, those of its slices, which are let go after
+ * it. All that together stays within `max_memory`, and so do samples on the heap. HEWN_OUT_OF_MEMORY with what is
+ * needed where a slice does not fit; else as hewn_volume_extract(), and what the sink fails with. */
+HEWN_API hewn_result hewn_volume_extract_parts(const hewn_volume *volume, const hewn_volume_extract_desc *desc,
+                                               const hewn_mesh_sink *sink, hewn_volume_extract_stats *stats,
+                                               hewn_error *error);
 
 #ifdef __cplusplus
 }

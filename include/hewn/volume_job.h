@@ -31,9 +31,13 @@ typedef struct hewn_volume_job_desc {
     const hewn_body_choice *keep;          /* not with `open` */
     const hewn_smooth_desc *smooth;
     const hewn_simplify_desc *simplify;
-    hewn_space space;              /* the default is glTF's for GLB, else RAS or the world */
-    const hewn_unit *unit;         /* what the input is in, whatever it says itself; NULL: as it says */
-    const hewn_unit *to_unit;      /* what the output shall be in; NULL: metres in glTF's space, else as it is */
+    hewn_space space;         /* the default is glTF's for GLB, else RAS or the world */
+    const hewn_unit *unit;    /* what the input is in, whatever it says itself; NULL: as it says */
+    const hewn_unit *to_unit; /* what the output shall be in; NULL: metres in glTF's space, else as it is */
+    /* Bytes that making the mesh may take, see hewn_volume_extract_parts(); the mesh is then made in parts, which wait
+     * on disk beside the output, and is the same; not with what is done besides. A file whose samples can stay in it is
+     * read slab by slab; of another one all samples count. The program itself does not. 0: no limit. */
+    uint64_t max_memory;
     uint32_t threads;              /* on the host; 0: what OpenMP chooses */
     double began;                  /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
     const hewn_progress *progress; /* or NULL; its stages have the names of the report's */
@@ -68,6 +72,7 @@ typedef struct hewn_volume_report {
     bool measured;
     hewn_volume_range range;
     uint64_t bins[HEWN_VOLUME_REPORT_BINS];
+    uint64_t max_memory; /* asked for; 0 where it was not */
     hewn_volume_extract_stats extraction;
     hewn_volume_smooth_desc filter; /* as asked for; a length of 0: the volume was not smoothed */
     bool smoothed, simplified;

@@ -101,6 +101,10 @@ static hewn_result read_volume(const hewn_arguments *arguments, request *out, he
     if (volume.has_iso)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
                          "--iso makes one surface of values; it does not go with --labels");
+    if (hewn_arguments_has(arguments, "max-memory"))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "meshes of labels are made at once; --max-memory does not go "
+                         "with --labels");
     out->desc.read = volume.read;
     out->desc.frame = volume.frame;
     if (from && !hewn_volume_format_find(from, &out->desc.read.format))

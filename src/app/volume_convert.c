@@ -12,8 +12,8 @@
 #include "app/volume_arguments.h"
 #include "base/error.h"
 
-static const char *const names[] = {"method",  "inside",     "space",         "open",   "smooth-volume",
-                                    "largest", "min-volume", "fill-cavities", "threads"};
+static const char *const names[] = {"method",  "inside",     "space",         "open",    "smooth-volume",
+                                    "largest", "min-volume", "fill-cavities", "threads", "max-memory"};
 
 bool hewn_volume_convert_any(const hewn_arguments *arguments)
 {
@@ -115,6 +115,7 @@ static hewn_result read_surface(const hewn_arguments *arguments, hewn_volume_job
 {
     const char *method = hewn_arguments_value(arguments, "method"), *inside = hewn_arguments_value(arguments, "inside");
     const char *threads = hewn_arguments_value(arguments, "threads");
+    const char *memory = hewn_arguments_value(arguments, "max-memory");
     bool known = !method || hewn_method_named(method, &desc->method);
     if (!known || (method && desc->method != HEWN_METHOD_MC33 && desc->method != HEWN_METHOD_MARCHING_CUBES))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method of a volume is mc33 or mc, not '%s'", method);
@@ -123,6 +124,8 @@ static hewn_result read_surface(const hewn_arguments *arguments, hewn_volume_job
     if (inside)
         desc->inside = inside[0] == 'a' ? HEWN_INSIDE_ABOVE : HEWN_INSIDE_BELOW;
     desc->open = hewn_arguments_has(arguments, "open");
+    if (memory)
+        HEWN_TRY(hewn_bytes_parse(memory, "--max-memory", &desc->max_memory, error));
     if (threads)
         HEWN_TRY(hewn_count_parse(threads, "--threads", 1, &desc->threads, error));
     if (desc->threads > 4096)

@@ -24,6 +24,10 @@
          "Fill the hollows in bodies, with what lies in them; of labels, those with one label around."},               \
         {0, "open", NULL,                                                                                              \
          "Leave the surface open where it leaves the volume. Default: close it there with a flat cap."},               \
+        {0, "max-memory", "SIZE",                                                                                      \
+         "Mesh a volume in parts that take at most SIZE bytes of memory; K, M and G stand for 2^10, 2^20 and 2^30. A " \
+         "raw, .nrrd, .mha or .nii file that is not compressed is read slab by slab. The parts wait on disk beside "   \
+         "the output, and the mesh is the same. Default: no limit."},                                                  \
     {                                                                                                                  \
         0, "threads", "N", "Mesh a volume with N threads. Default: one for each processor."                            \
     }

@@ -4,7 +4,11 @@
  * outermost samples do. So its places are those of the samples plus `rim`, and every crossed edge has its four cells.
  *
  * Edges belong to the row of samples (along i) that they start in. Vertices are numbered row by row, in a row those on
- * edges along i first, then j, then k; after all of these come the vertices in cells, in the order of their cells. */
+ * edges along i first, then j, then k; after all of these come the vertices in cells, in the order of their cells.
+ *
+ * A lattice may be looked at in slabs of slices (along k), of which one is here at a time. Its signs reach two slices
+ * further and its rows one, since its cells name vertices of the next slice, and those are numbered by the signs of the
+ * one after that. Numbers are always the whole's. */
 #ifndef HEWN_SRC_ISO_LATTICE_H
 #define HEWN_SRC_ISO_LATTICE_H
 
@@ -13,6 +17,11 @@
 
 /* Vertices keep this part of an edge away from its ends, at least. */
 #define HEWN_LATTICE_MARGIN 0x1p-14
+
+/* How many there are, or before which there are so many. */
+typedef struct hewn_lattice_sums {
+    uint64_t vertices, centres, triangles; /* vertices on edges, in cells */
+} hewn_lattice_sums;
 
 /* What a row of samples has, and after the sums where its share begins. */
 typedef struct hewn_lattice_row {
@@ -26,6 +35,8 @@ typedef struct hewn_lattice {
     uint64_t first;   /* sample (0, 0, 0) of the frame */
     uint32_t rim;     /* 1 where it is closed, else 0 */
     uint32_t dims[3]; /* with the rim */
+    uint32_t begin;   /* the slab's slices are these, */
+    uint32_t end;     /* up to before this one */
     hewn_threshold threshold;
     /* The trilinear field that is meshed: rise × (sample - level), below 0 outside where `above`, inside otherwise. 0
      * counts as just not below. */
@@ -36,23 +47,37 @@ typedef struct hewn_lattice {
     double turn[9];   /* takes the gradient of samples to an outward direction there */
     bool mirrors;
     uint32_t words;         /* a row has so many words of 64 bits, and one of 0 follows the last row */
-    uint64_t *inside;       /* bit i % 64 of word i / 64 */
-    hewn_lattice_row *rows; /* dims[1] × dims[2] */
+    uint64_t *inside;       /* bit i % 64 of word i / 64, of the slab's rows and those of two more slices */
+    hewn_lattice_row *rows; /* of the slab and one more slice */
     const uint32_t *table;  /* of patches, as in iso/mc33.h */
     bool flipped;           /* the table's inside is what is not inside here */
     bool normals;
-    uint64_t vertex_count, centre_count, triangle_count;
+    hewn_lattice_sums before; /* the slab */
+    hewn_lattice_sums after;  /* and after it, with what is in it */
+    uint64_t reached;         /* vertices on edges with those of the slice after it */
+    uint64_t vertex_count;    /* of the whole, on edges */
     uint64_t active_cells, decided_cells, cap_vertices;
 } hewn_lattice;
 
+/* The slice before which the slab's rows, and its signs, end. */
+static inline uint32_t hewn_lattice_rows_end(const hewn_lattice *lattice)
+{
+    return lattice->end < lattice->dims[2] ? lattice->end + 1 : lattice->end;
+}
+
+static inline uint32_t hewn_lattice_signs_end(const hewn_lattice *lattice)
+{
+    return lattice->dims[2] - lattice->end > 2 ? lattice->end + 2 : lattice->dims[2];
+}
+
 static inline const uint64_t *hewn_lattice_bits(const hewn_lattice *lattice, uint32_t j, uint32_t k)
 {
-    return lattice->inside + ((uint64_t)k * lattice->dims[1] + j) * lattice->words;
+    return lattice->inside + ((uint64_t)(k - lattice->begin) * lattice->dims[1] + j) * lattice->words;
 }
 
 static inline hewn_lattice_row *hewn_lattice_row_at(const hewn_lattice *lattice, uint32_t j, uint32_t k)
 {
-    return &lattice->rows[(uint64_t)k * lattice->dims[1] + j];
+    return &lattice->rows[(uint64_t)(k - lattice->begin) * lattice->dims[1] + j];
 }
 
 /* Whether a place along an axis is in the rim. */

@@ -95,32 +95,38 @@ static uint64_t cap_vertices(const hewn_lattice *lattice, uint32_t j, uint32_t k
 /* Turns counts into where each row's share begins. */
 static void sum_up(hewn_lattice *lattice)
 {
-    uint64_t vertices = 0, centres = 0, triangles = 0, rows = (uint64_t)lattice->dims[1] * lattice->dims[2];
+    hewn_lattice_sums sums = lattice->before;
+    uint64_t own = (uint64_t)lattice->dims[1] * (lattice->end - lattice->begin);
+    uint64_t rows = (uint64_t)lattice->dims[1] * (hewn_lattice_rows_end(lattice) - lattice->begin);
     for (uint64_t i = 0; i < rows; i++) {
         hewn_lattice_row *row = &lattice->rows[i], count = *row;
+        if (i == own)
+            lattice->after = sums;
         for (int axis = 0; axis < 3; axis++) {
-            row->vertices[axis] = (uint32_t)vertices;
-            vertices += count.vertices[axis];
+            row->vertices[axis] = (uint32_t)sums.vertices;
+            sums.vertices += count.vertices[axis];
         }
-        row->centres = (uint32_t)centres;
-        row->triangles = triangles;
-        centres += count.centres;
-        triangles += count.triangles;
+        row->centres = (uint32_t)sums.centres;
+        row->triangles = sums.triangles;
+        sums.centres += count.centres;
+        sums.triangles += count.triangles;
     }
-    lattice->vertex_count = vertices;
-    lattice->centre_count = centres;
-    lattice->triangle_count = triangles;
+    if (rows == own)
+        lattice->after = sums;
+    lattice->reached = sums.vertices;
 }
 
 hewn_result hewn_lattice_count(hewn_lattice *lattice, hewn_error *error)
 {
     uint64_t active = 0, decided = 0, caps = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(+ : active, decided, caps) if (lattice->dims[2] > 8)
-    for (uint32_t k = 0; k < lattice->dims[2]; k++) {
+    for (uint32_t k = lattice->begin; k < hewn_lattice_rows_end(lattice); k++) {
         for (uint32_t j = 0; j < lattice->dims[1]; j++) {
             hewn_lattice_row *row = hewn_lattice_row_at(lattice, j, k);
             *row = (hewn_lattice_row){0};
             count_edges(lattice, j, k, row);
+            if (k >= lattice->end)
+                continue;
             if (lattice->rim)
                 caps += cap_vertices(lattice, j, k, row);
             if (j + 1 == lattice->dims[1] || k + 1 == lattice->dims[2])
@@ -134,8 +140,9 @@ hewn_result hewn_lattice_count(hewn_lattice *lattice, hewn_error *error)
     lattice->active_cells = active;
     lattice->decided_cells = decided;
     lattice->cap_vertices = caps;
-    if (lattice->vertex_count + lattice->centre_count >= UINT32_MAX || lattice->triangle_count > UINT64_MAX / 64)
-        return hewn_fail(error, HEWN_LIMIT, "the surface needs %llu vertices, more than indices can name",
-                         (unsigned long long)(lattice->vertex_count + lattice->centre_count));
+    uint64_t vertices = lattice->reached + lattice->after.centres;
+    if (vertices >= UINT32_MAX || lattice->after.triangles > UINT64_MAX / 64)
+        return hewn_fail(error, HEWN_LIMIT, "the surface needs %llu vertices%s, more than indices can name",
+                         (unsigned long long)vertices, lattice->end < lattice->dims[2] ? " or more" : "");
     return HEWN_OK;
 }

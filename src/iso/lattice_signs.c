@@ -47,10 +47,10 @@ static void find_row(const hewn_lattice *lattice, uint64_t from, uint64_t *to)
 
 void hewn_lattice_find_signs(hewn_lattice *lattice)
 {
-    uint64_t rows = (uint64_t)lattice->dims[1] * lattice->dims[2];
+    uint64_t rows = (uint64_t)lattice->dims[1] * (hewn_lattice_signs_end(lattice) - lattice->begin);
 #pragma omp parallel for schedule(static) if (rows > 64)
     for (uint64_t row = 0; row < rows; row++) {
-        uint32_t j = (uint32_t)(row % lattice->dims[1]), k = (uint32_t)(row / lattice->dims[1]);
+        uint32_t j = (uint32_t)(row % lattice->dims[1]), k = lattice->begin + (uint32_t)(row / lattice->dims[1]);
         uint64_t *to = lattice->inside + row * lattice->words;
         uint64_t source = (uint64_t)(k - lattice->rim) * lattice->volume->dims[1] + (j - lattice->rim);
         if (hewn_lattice_in_rim(lattice, 1, j) || hewn_lattice_in_rim(lattice, 2, k))

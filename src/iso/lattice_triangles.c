@@ -9,11 +9,12 @@
 typedef struct cell_row {
     const hewn_lattice *lattice;
     hewn_triangles *out;
-    uint32_t along[4];   /* edges along i, of rows (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1) */
-    uint32_t beside[2];  /* along j, of rows (j, k), (j, k + 1) */
-    uint32_t upright[2]; /* along k, of rows (j, k), (j + 1, k) */
-    uint32_t centre;
-    uint64_t triangle;
+    uint32_t along[4];     /* edges along i, of rows (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1) */
+    uint32_t beside[2];    /* along j, of rows (j, k), (j, k + 1) */
+    uint32_t upright[2];   /* along k, of rows (j, k), (j + 1, k) */
+    uint32_t centre;       /* the next one's number */
+    uint64_t centre_place; /* and its place among the slab's vertices */
+    uint64_t triangle;     /* the next one's place */
 } cell_row;
 
 static cell_row begin_row(const hewn_lattice *lattice, hewn_triangles *out, uint32_t j, uint32_t k)
@@ -29,7 +30,8 @@ static cell_row begin_row(const hewn_lattice *lattice, hewn_triangles *out, uint
     }
     const hewn_lattice_row *own = hewn_lattice_row_at(lattice, j, k);
     row.centre = (uint32_t)lattice->vertex_count + own->centres;
-    row.triangle = own->triangles;
+    row.centre_place = lattice->reached - lattice->before.vertices + own->centres - lattice->before.centres;
+    row.triangle = own->triangles - lattice->before.triangles;
     return row;
 }
 
@@ -61,15 +63,16 @@ static bool in_face(uint32_t edge, uint32_t face)
 }
 
 /* The mean of crossings, halfway from those in a face where `centre` names one (iso/patch.h). */
-static void place_centre(const cell_row *row, const uint32_t names[16], uint32_t centre, uint32_t vertex)
+static void place_centre(const cell_row *row, const uint32_t names[16], uint32_t centre)
 {
     const hewn_triangles *out = row->out;
+    uint64_t vertex = row->centre_place;
     uint32_t face = centre >> 12;
     double sum[3] = {0}, near[3] = {0}, normal[3] = {0}, count = 0, near_count = 0, size = 0;
     for (uint32_t edge = 0; edge < 12; edge++) {
         if (!(centre >> edge & 1))
             continue;
-        const uint64_t at = 3 * (uint64_t)names[edge];
+        const uint64_t at = 3 * (names[edge] - row->lattice->before.vertices);
         bool is_near = face != 0 && in_face(edge, face - 1);
         for (int axis = 0; axis < 3; axis++) {
             double position = (double)out->positions[at + (uint64_t)axis];
@@ -84,10 +87,9 @@ static void place_centre(const cell_row *row, const uint32_t names[16], uint32_t
         size += normal[axis] * normal[axis];
     for (uint32_t axis = 0; axis < 3; axis++) {
         double mean = sum[axis] / count;
-        out->positions[3 * (uint64_t)vertex + axis] =
-            (float)(near_count > 0 ? (mean + near[axis] / near_count) / 2 : mean);
+        out->positions[3 * vertex + axis] = (float)(near_count > 0 ? (mean + near[axis] / near_count) / 2 : mean);
         if (row->lattice->normals)
-            out->normals[3 * (uint64_t)vertex + axis] = size > 0 ? (float)(normal[axis] / sqrt(size)) : axis == 2;
+            out->normals[3 * vertex + axis] = size > 0 ? (float)(normal[axis] / sqrt(size)) : axis == 2;
     }
 }
 
@@ -99,8 +101,9 @@ static void cut_cell(cell_row *row, uint32_t pattern, const uint32_t *record, bo
     name_edges(row, pattern, names);
     uint32_t triangles = record[0] & 255, centres = record[0] >> 8;
     for (uint32_t i = 0; i < centres; i++) {
-        place_centre(row, names, record[1 + i / 2] >> 16 * (i % 2) & 0xFFFF, row->centre);
+        place_centre(row, names, record[1 + i / 2] >> 16 * (i % 2) & 0xFFFF);
         names[HEWN_PATCH_FIRST_CENTRE + i] = row->centre++;
+        row->centre_place++;
     }
     const uint32_t *words = record + 1 + (centres + 1) / 2;
     uint32_t *to = row->out->indices + 3 * row->triangle;
@@ -117,7 +120,9 @@ void hewn_lattice_emit_triangles(const hewn_lattice *lattice, hewn_triangles *ou
 {
     bool turn = lattice->flipped != lattice->mirrors;
 #pragma omp parallel for schedule(dynamic, 4) if (lattice->dims[2] > 8)
-    for (uint32_t k = 0; k < lattice->dims[2] - 1; k++) {
+    for (uint32_t k = lattice->begin; k < lattice->end; k++) {
+        if (k + 1 == lattice->dims[2])
+            continue;
         for (uint32_t j = 0; j + 1 < lattice->dims[1]; j++) {
             cell_row row = begin_row(lattice, out, j, k);
             hewn_lattice_cells cells = hewn_lattice_cells_at(lattice, j, k);

@@ -138,8 +138,9 @@ HEWN_LATTICE_INLINE void emit_slice(const hewn_lattice *lattice, uint32_t k, hew
     for (uint32_t j = 0; j < lattice->dims[1]; j++) {
         const hewn_lattice_row *begin = hewn_lattice_row_at(lattice, j, k);
         edge_row row = {.lattice = lattice, .j = j, .k = k};
-        row.position = out->positions + 3 * (uint64_t)begin->vertices[0];
-        row.normal = lattice->normals ? out->normals + 3 * (uint64_t)begin->vertices[0] : NULL;
+        uint64_t place = begin->vertices[0] - lattice->before.vertices;
+        row.position = out->positions + 3 * place;
+        row.normal = lattice->normals ? out->normals + 3 * place : NULL;
         for (row.axis = 0; row.axis < 3; row.axis++) {
             const uint32_t at[3] = {0, j, k};
             if (row.axis == 0 || at[row.axis] + 1 < lattice->dims[row.axis])
@@ -154,7 +155,7 @@ HEWN_LATTICE_INLINE void emit_slice(const hewn_lattice *lattice, uint32_t k, hew
 void hewn_lattice_emit_vertices(const hewn_lattice *lattice, hewn_triangles *out)
 {
 #pragma omp parallel for schedule(dynamic, 4) if (lattice->dims[2] > 8)
-    for (uint32_t k = 0; k < lattice->dims[2]; k++) {
+    for (uint32_t k = lattice->begin; k < hewn_lattice_rows_end(lattice); k++) {
         switch (lattice->volume->type) {
             HEWN_VOXEL_TYPES(EMIT)
             EMIT(HEWN_VOXEL_HALF, uint16_t)

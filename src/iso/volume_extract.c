@@ -1,5 +1,5 @@
 /* One extraction from a volume, from beginning to end. */
-#include "hewn/volume_extract.h"
+#include "iso/volume_extraction.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,22 +9,12 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "iso/bodies.h"
-#include "iso/lattice.h"
 #include "iso/marching_cubes.h"
-#include "iso/mc33.h"
 
 /* The coarsest that floats may be: as a part of a voxel. */
 #define MOST_MARGIN 0x1p-4
 
-typedef struct extraction {
-    const hewn_volume_extract_desc *desc;
-    hewn_lattice lattice;
-    hewn_mc33_table table;
-    hewn_volume_extract_stats stats;
-    double begin, stage;
-} extraction;
-
-static hewn_result end_stage(extraction *run, const char *name, double share, hewn_error *error)
+hewn_result hewn_volume_extraction_stage(hewn_volume_extraction *run, const char *name, double share, hewn_error *error)
 {
     double now = hewn_clock_now() - run->begin;
     run->stats.stages[run->stats.stage_count++] = (hewn_extract_stage){name, run->stage, now};
@@ -141,7 +131,7 @@ static void set_field(hewn_lattice *lattice, const hewn_volume_extract_desc *des
     lattice->normals = !desc->no_normals;
 }
 
-static hewn_result lay(extraction *run, hewn_error *error)
+static hewn_result lay(hewn_volume_extraction *run, hewn_error *error)
 {
     hewn_lattice *lattice = &run->lattice;
     const hewn_volume *volume = lattice->volume;
@@ -153,20 +143,20 @@ static hewn_result lay(extraction *run, hewn_error *error)
             return hewn_fail(error, HEWN_LIMIT, "%u samples along axis %d are too many", volume->dims[axis], axis + 1);
     }
     lattice->words = (lattice->dims[0] + 63) / 64;
-    uint64_t rows = (uint64_t)lattice->dims[1] * lattice->dims[2];
-    lattice->inside = hewn_alloc(rows * lattice->words + 1, sizeof *lattice->inside);
-    lattice->rows = hewn_alloc(rows, sizeof *lattice->rows);
-    if (!lattice->inside || !lattice->rows)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the signs of %llu rows of samples",
-                         (unsigned long long)rows);
     return HEWN_OK;
 }
 
-static hewn_result prepare(extraction *run, hewn_method method, hewn_error *error)
+hewn_result hewn_volume_extraction_begin(const hewn_volume *volume, const hewn_volume_extract_desc *desc,
+                                         hewn_volume_extraction *out, hewn_error *error)
 {
+    hewn_method method = desc->method == HEWN_METHOD_DEFAULT ? HEWN_METHOD_MC33 : desc->method;
+    hewn_volume_extraction *run = out;
     hewn_lattice *lattice = &run->lattice;
-    set_field(lattice, run->desc);
-    HEWN_TRY(set_place(lattice, run->desc->place, error));
+    *run = (hewn_volume_extraction){.desc = desc, .lattice = {.volume = volume}, .begin = hewn_clock_now()};
+    HEWN_TRY(check(volume, desc, method, error));
+    HEWN_TRY(hewn_progress_report(desc->progress, "extract", 0, error));
+    set_field(lattice, desc);
+    HEWN_TRY(set_place(lattice, desc->place, error));
     HEWN_TRY(lay(run, error));
     lattice->flipped = method == HEWN_METHOD_MC33 && lattice->above;
     hewn_result result = method == HEWN_METHOD_MC33 ? hewn_mc33_table_derive(&run->table, error)
@@ -177,12 +167,64 @@ static hewn_result prepare(extraction *run, hewn_method method, hewn_error *erro
     return result;
 }
 
+void hewn_volume_extraction_free_slab(hewn_volume_extraction *run)
+{
+    hewn_lattice *lattice = &run->lattice;
+    hewn_free(lattice->inside);
+    hewn_free(lattice->rows);
+    lattice->inside = NULL;
+    lattice->rows = NULL;
+}
+
+void hewn_volume_extraction_clear(hewn_volume_extraction *run)
+{
+    hewn_volume_extraction_free_slab(run);
+    hewn_mc33_table_destroy(&run->table);
+}
+
+static uint64_t sign_words(const hewn_lattice *slab)
+{
+    return (uint64_t)slab->dims[1] * (hewn_lattice_signs_end(slab) - slab->begin) * slab->words + 1;
+}
+
+static uint64_t row_count(const hewn_lattice *slab)
+{
+    return (uint64_t)slab->dims[1] * (hewn_lattice_rows_end(slab) - slab->begin);
+}
+
+uint64_t hewn_volume_extraction_bytes(const hewn_volume_extraction *run, uint32_t begin, uint32_t end)
+{
+    hewn_lattice slab = run->lattice;
+    slab.begin = begin;
+    slab.end = end;
+    return sign_words(&slab) * sizeof *slab.inside + row_count(&slab) * sizeof *slab.rows;
+}
+
+hewn_result hewn_volume_extraction_lay(hewn_volume_extraction *run, uint32_t begin, uint32_t end, hewn_error *error)
+{
+    hewn_lattice *lattice = &run->lattice;
+    hewn_volume_extraction_free_slab(run);
+    lattice->begin = begin;
+    lattice->end = end;
+    lattice->inside = hewn_alloc(sign_words(lattice), sizeof *lattice->inside);
+    lattice->rows = hewn_alloc(row_count(lattice), sizeof *lattice->rows);
+    if (!lattice->inside || !lattice->rows)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the signs of %llu rows of samples",
+                         (unsigned long long)row_count(lattice));
+    return HEWN_OK;
+}
+
+hewn_result hewn_volume_extraction_explain_empty(const hewn_volume_extraction *run, hewn_error *error)
+{
+    return hewn_fail(error, HEWN_BAD_INPUT, "there is no surface at the value %g", run->desc->iso);
+}
+
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
 static hewn_result allocate(const hewn_lattice *lattice, hewn_triangles *out, hewn_error *error)
 {
-    out->vertex_count = lattice->vertex_count + lattice->centre_count;
-    out->triangle_count = lattice->triangle_count;
+    out->vertex_count = lattice->after.vertices + lattice->after.centres;
+    out->triangle_count = lattice->after.triangles;
     out->positions = hewn_alloc(out->vertex_count, 3 * sizeof *out->positions);
     out->normals = lattice->normals ? hewn_alloc(out->vertex_count, 3 * sizeof *out->normals) : NULL;
     out->indices = hewn_alloc(out->triangle_count, 3 * sizeof *out->indices);
@@ -192,46 +234,47 @@ static hewn_result allocate(const hewn_lattice *lattice, hewn_triangles *out, he
                      (unsigned long long)out->vertex_count, (unsigned long long)out->triangle_count);
 }
 
-static hewn_result run_stages(extraction *run, hewn_method method, hewn_triangles *out, hewn_error *error)
+static hewn_result run_stages(hewn_volume_extraction *run, hewn_triangles *out, hewn_error *error)
 {
     hewn_lattice *lattice = &run->lattice;
-    HEWN_TRY(hewn_progress_report(run->desc->progress, "extract", 0, error));
-    HEWN_TRY(prepare(run, method, error));
+    HEWN_TRY(hewn_volume_extraction_lay(run, 0, lattice->dims[2], error));
     hewn_lattice_find_signs(lattice);
-    HEWN_TRY(end_stage(run, "signs", 0.3, error));
+    HEWN_TRY(hewn_volume_extraction_stage(run, "signs", 0.3, error));
     HEWN_TRY(hewn_lattice_count(lattice, error));
+    lattice->vertex_count = lattice->after.vertices;
     run->stats.active_cells = lattice->active_cells;
     run->stats.decided_cells = lattice->decided_cells;
     run->stats.cap_vertices = lattice->cap_vertices;
-    HEWN_TRY(end_stage(run, "count", 0.5, error));
-    if (lattice->triangle_count == 0)
-        return hewn_fail(error, HEWN_BAD_INPUT, "there is no surface at the value %g", run->desc->iso);
+    HEWN_TRY(hewn_volume_extraction_stage(run, "count", 0.5, error));
+    if (lattice->after.triangles == 0)
+        return hewn_volume_extraction_explain_empty(run, error);
     HEWN_TRY(allocate(lattice, out, error));
     hewn_lattice_emit_vertices(lattice, out);
-    HEWN_TRY(end_stage(run, "vertices", 0.8, error));
+    HEWN_TRY(hewn_volume_extraction_stage(run, "vertices", 0.8, error));
     hewn_lattice_emit_triangles(lattice, out);
-    HEWN_TRY(end_stage(run, "triangles", run->desc->keep ? 0.9 : 1, error));
+    HEWN_TRY(hewn_volume_extraction_stage(run, "triangles", run->desc->keep ? 0.9 : 1, error));
     if (!run->desc->keep)
         return HEWN_OK;
     HEWN_TRY(hewn_lattice_choose_bodies(lattice, run->desc->keep, out, &run->stats.bodies, error));
     run->stats.cap_vertices = lattice->cap_vertices;
-    return end_stage(run, "bodies", 1, error);
+    return hewn_volume_extraction_stage(run, "bodies", 1, error);
 }
 
 hewn_result hewn_volume_extract(const hewn_volume *volume, const hewn_volume_extract_desc *desc, hewn_triangles *out,
                                 hewn_volume_extract_stats *stats, hewn_error *error)
 {
-    extraction run = {.desc = desc, .lattice = {.volume = volume}, .begin = hewn_clock_now()};
-    hewn_method method = desc->method == HEWN_METHOD_DEFAULT ? HEWN_METHOD_MC33 : desc->method;
+    hewn_volume_extraction run;
     *out = (hewn_triangles){0};
-    hewn_result result = check(volume, desc, method, error);
+    hewn_result result = hewn_volume_extraction_begin(volume, desc, &run, error);
     if (result == HEWN_OK)
-        result = run_stages(&run, method, out, error);
-    hewn_free(run.lattice.inside);
-    hewn_free(run.lattice.rows);
-    hewn_mc33_table_destroy(&run.table);
+        result = run_stages(&run, out, error);
+    hewn_volume_extraction_clear(&run);
     if (result != HEWN_OK)
         hewn_triangles_destroy(out);
+    else {
+        run.stats.vertices = out->vertex_count;
+        run.stats.triangles = out->triangle_count;
+    }
     if (stats)
         *stats = run.stats;
     return result;

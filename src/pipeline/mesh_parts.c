@@ -18,19 +18,41 @@ static uint64_t bytes(void *user, const hewn_mesh_part *part)
     return hewn_certifier_bytes(parts->certifier, part);
 }
 
+static hewn_result begin(hewn_mesh_parts *parts, const char *output, hewn_error *error)
+{
+    HEWN_TRY(hewn_spool_create(output, &parts->spool, error));
+    return hewn_certifier_create(&parts->certifier, error);
+}
+
+static hewn_result finish(hewn_mesh_parts *parts, uint64_t vertices, uint64_t triangles, hewn_certificate *certificate,
+                          hewn_error *error)
+{
+    HEWN_TRY(hewn_certifier_finish(parts->certifier, certificate, error));
+    hewn_certifier_destroy(&parts->certifier);
+    return hewn_spool_view(parts->spool, vertices, triangles, &parts->triangles, error);
+}
+
 hewn_result hewn_mesh_parts_make(hewn_mesh_parts *parts, hewn_extractor *extractor, const hewn_extract_desc *desc,
                                  const char *output, hewn_extract_stats *stats, hewn_certificate *certificate,
                                  hewn_error *error)
 {
     const hewn_mesh_sink sink = {.user = parts, .take = take, .bytes = bytes};
-    HEWN_TRY(hewn_spool_create(output, &parts->spool, error));
-    HEWN_TRY(hewn_certifier_create(&parts->certifier, error));
+    HEWN_TRY(begin(parts, output, error));
     HEWN_TRY(hewn_extract_parts(extractor, desc, &sink, stats, error));
-    HEWN_TRY(hewn_certifier_finish(parts->certifier, certificate, error));
-    hewn_certifier_destroy(&parts->certifier);
-    HEWN_TRY(hewn_spool_view(parts->spool, stats->vertices, stats->triangles, &parts->triangles, error));
+    HEWN_TRY(finish(parts, stats->vertices, stats->triangles, certificate, error));
     parts->triangles.paired = hewn_method_is_dual(stats->method) && stats->fans == 0;
     return HEWN_OK;
+}
+
+hewn_result hewn_mesh_parts_of_volume(hewn_mesh_parts *parts, const hewn_volume *volume,
+                                      const hewn_volume_extract_desc *desc, const char *output,
+                                      hewn_volume_extract_stats *stats, hewn_certificate *certificate,
+                                      hewn_error *error)
+{
+    const hewn_mesh_sink sink = {.user = parts, .take = take, .bytes = bytes};
+    HEWN_TRY(begin(parts, output, error));
+    HEWN_TRY(hewn_volume_extract_parts(volume, desc, &sink, stats, error));
+    return finish(parts, stats->vertices, stats->triangles, certificate, error);
 }
 
 void hewn_mesh_parts_clear(hewn_mesh_parts *parts)

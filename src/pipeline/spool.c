@@ -19,6 +19,7 @@ struct hewn_spool {
     int files[FILES];
     void *views[FILES];
     size_t lengths[FILES];
+    bool normals; /* parts have them */
 };
 
 static hewn_result system_failure(hewn_error *error, const hewn_spool *spool, const char *what)
@@ -124,7 +125,9 @@ hewn_result hewn_spool_take(hewn_spool *spool, const hewn_mesh_part *part, hewn_
         const hewn_vertex_run *vertices = &part->vertices[i];
         const hewn_triangle_run *triangles = &part->triangles[i];
         HEWN_TRY(put(spool, POSITIONS, vertices->positions, vertices->first, vertices->count, error));
-        HEWN_TRY(put(spool, NORMALS, vertices->normals, vertices->first, vertices->count, error));
+        if (vertices->normals)
+            HEWN_TRY(put(spool, NORMALS, vertices->normals, vertices->first, vertices->count, error));
+        spool->normals = spool->normals || vertices->normals;
         HEWN_TRY(put(spool, INDICES, triangles->indices, triangles->first, triangles->count, error));
     }
     return HEWN_OK;
@@ -148,7 +151,7 @@ hewn_result hewn_spool_view(hewn_spool *spool, uint64_t vertices, uint64_t trian
 {
     *out = (hewn_triangles){0};
     HEWN_TRY(map(spool, POSITIONS, vertices, error));
-    HEWN_TRY(map(spool, NORMALS, vertices, error));
+    HEWN_TRY(map(spool, NORMALS, spool->normals ? vertices : 0, error));
     HEWN_TRY(map(spool, INDICES, triangles, error));
     *out = (hewn_triangles){.vertex_count = vertices,
                             .triangle_count = triangles,

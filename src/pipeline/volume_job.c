@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "geom/distinct.h"
+#include "pipeline/mesh_parts.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
 
@@ -21,6 +22,7 @@ typedef struct volume_job {
     hewn_volume volume;
     uint64_t frame; /* of `volume`: what is asked for, or 0 where only that one is left */
     hewn_triangles mesh;
+    hewn_mesh_parts parts; /* where there is a limit of memory: `mesh` is a view of them */
 } volume_job;
 
 static void begin_stage(volume_job *job)
@@ -81,6 +83,12 @@ static hewn_result check(volume_job *job, hewn_error *error)
     if (desc->open && desc->keep)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
                          "which bodies to keep can be said where their surfaces are closed, not with open ones");
+    if (desc->max_memory > 0 && (desc->filter || desc->keep || desc->smooth || desc->simplify))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s needs all of it in memory, so it excludes a limit of memory",
+                         desc->filter   ? "smoothing a volume"
+                         : desc->keep   ? "choosing bodies"
+                         : desc->smooth ? "smoothing a mesh"
+                                        : "simplifying a mesh");
     if (desc->report && strcmp(desc->report, desc->output) == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
                          strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
@@ -90,6 +98,22 @@ static hewn_result check(volume_job *job, hewn_error *error)
 
 /* --- reading ------------------------------------------------------------------------------------------------------ */
 
+/* Samples that cannot stay in the file are read whole, and have to fit. */
+static hewn_result read_within(volume_job *job, hewn_volume_read_desc *read, hewn_error *error)
+{
+    uint64_t most = job->desc->max_memory;
+    bool limits = most > 0 && (read->memory_limit == 0 || most < read->memory_limit);
+    if (limits)
+        read->memory_limit = most;
+    hewn_result result = hewn_volume_read(job->desc->input, read, &job->volume, error);
+    if (result != HEWN_LIMIT || !limits)
+        return result;
+    return hewn_fail_at(error, HEWN_OUT_OF_MEMORY, job->desc->input, 0,
+                        "a volume that is packed or not in this machine's byte order is read whole, and its samples "
+                        "take more than the %llu bytes that are allowed",
+                        (unsigned long long)most);
+}
+
 static hewn_result load(volume_job *job, hewn_error *error)
 {
     const hewn_volume_job_desc *desc = job->desc;
@@ -98,7 +122,7 @@ static hewn_result load(volume_job *job, hewn_error *error)
     read.progress = desc->progress;
     begin_stage(job);
     report->from = read.format != HEWN_VOLUME_UNKNOWN ? read.format : hewn_volume_format_of_file(desc->input);
-    HEWN_TRY(hewn_volume_read(desc->input, &read, &job->volume, error));
+    HEWN_TRY(read_within(job, &read, error));
     const hewn_volume *volume = &job->volume;
     if (desc->frame >= volume->frame_count)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no frame %llu; the volume has %llu, counted from 0",
@@ -256,15 +280,24 @@ static hewn_result extract(volume_job *job, hewn_error *error)
                                        .no_normals = report->to == HEWN_MESH_STL || report->to == HEWN_MESH_3MF,
                                        .place = report->place,
                                        .keep = desc->keep ? &keep : NULL,
+                                       .max_memory = desc->max_memory,
                                        .progress = desc->progress};
     begin_stage(job);
-    hewn_result result = hewn_volume_extract(&job->volume, &wanted, &job->mesh, &report->extraction, error);
+    hewn_result result;
+    if (desc->max_memory > 0)
+        result = hewn_mesh_parts_of_volume(&job->parts, &job->volume, &wanted, desc->output, &report->extraction,
+                                           &report->certificate, error);
+    else
+        result = hewn_volume_extract(&job->volume, &wanted, &job->mesh, &report->extraction, error);
+    report->max_memory = desc->max_memory;
     report->method = report->extraction.method;
     report->open = desc->open;
     if (result == HEWN_BAD_INPUT && report->extraction.active_cells == 0 && report->extraction.stage_count > 0)
         return explain_nothing(job, error);
     HEWN_TRY(result);
     end_stage(job, "extract");
+    if (desc->max_memory > 0)
+        job->mesh = job->parts.triangles;
     /* A head that touches the border has a cap too, but not mostly. */
     report->box_shaped = 2 * report->extraction.cap_vertices > job->mesh.vertex_count;
     return report->box_shaped || desc->report ? measure(job, error) : HEWN_OK;
@@ -324,10 +357,12 @@ static hewn_result refine(volume_job *job, hewn_error *error)
 static hewn_result certify(volume_job *job, hewn_error *error)
 {
     hewn_certificate *certificate = &job->report->certificate;
-    begin_stage(job);
-    HEWN_TRY(hewn_certify(&job->mesh, job->desc->progress, certificate, error));
+    if (job->desc->max_memory == 0) { /* else it was certified as it came */
+        begin_stage(job);
+        HEWN_TRY(hewn_certify(&job->mesh, job->desc->progress, certificate, error));
+        end_stage(job, "certify");
+    }
     certificate->max_residual = 0.0 / 0.0; /* samples are all that is known of the field */
-    end_stage(job, "certify");
     if (certificate->manifold && certificate->oriented && (certificate->closed || job->desc->open))
         return HEWN_OK;
     return hewn_fail(error, HEWN_INTERNAL,
@@ -355,6 +390,8 @@ static hewn_result write(volume_job *job, hewn_error *error)
                                   .progress = desc->progress};
     if (report->space == HEWN_SPACE_GLTF && report->anatomical)
         write_desc.space = "x left, y head, z front";
+    if (desc->max_memory > 0)
+        write_desc.progress = hewn_mesh_parts_progress(&job->parts, desc->progress);
     HEWN_TRY(hewn_triangles_write(&job->mesh, desc->output, &write_desc, error));
     end_stage(job, "write");
     return HEWN_OK;
@@ -399,7 +436,10 @@ hewn_result hewn_volume_convert(const hewn_volume_job_desc *desc, hewn_volume_re
     *out = (hewn_volume_report){0};
     volume_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
     hewn_result result = run(&job, error);
+    if (desc->max_memory > 0)
+        job.mesh = (hewn_triangles){0};
     hewn_triangles_destroy(&job.mesh);
+    hewn_mesh_parts_clear(&job.parts);
     hewn_volume_destroy(&job.volume);
     out->seconds = hewn_clock_now() - job.began;
     out->peak_host_bytes = hewn_peak_host_bytes();

@@ -85,7 +85,13 @@ static void print_mesh(hewn_json *json, const hewn_volume_report *report)
     hewn_json_unsigned(json, "decided_cells", stats->decided_cells);
     hewn_json_unsigned(json, "cap_vertices", stats->cap_vertices);
     hewn_json_bool(json, "box_shaped", report->box_shaped);
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "max_memory", report->max_memory);
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "parts", stats->parts);
     hewn_json_object(json, "peak");
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "counted_bytes", stats->peak_memory);
     hewn_json_unsigned(json, "host_bytes", report->peak_host_bytes);
     hewn_json_end_object(json);
     hewn_json_object(json, "counts");

@@ -76,15 +76,21 @@ hewn_result hewn_volume_check(const hewn_volume *volume, hewn_error *error)
     return HEWN_OK;
 }
 
-void hewn_volume_forget(const hewn_volume *volume, uint64_t frame, uint32_t k0, uint32_t k1)
+void hewn_volume_forget_samples(const hewn_volume *volume, uint64_t at, uint64_t count)
 {
     if (!volume->mapped)
         return;
     uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
-    size_t slice = (size_t)volume->dims[0] * volume->dims[1] * hewn_voxel_size(volume->type);
-    uintptr_t begin = (uintptr_t)hewn_volume_frame(volume, frame) + k0 * slice, end = begin + (k1 - k0) * slice;
-    begin = (begin + page - 1) / page * page; /* pages that slices outside share stay */
+    size_t size = hewn_voxel_size(volume->type);
+    uintptr_t begin = (uintptr_t)volume->samples + at * size, end = begin + count * size;
+    begin = (begin + page - 1) / page * page; /* pages that samples outside share stay */
     end = end / page * page;
     if (begin < end)
         madvise((void *)begin, end - begin, MADV_DONTNEED); /* a private mapping that nobody writes: nothing is lost */
+}
+
+void hewn_volume_forget(const hewn_volume *volume, uint64_t frame, uint32_t k0, uint32_t k1)
+{
+    uint64_t slice = (uint64_t)volume->dims[0] * volume->dims[1];
+    hewn_volume_forget_samples(volume, frame * hewn_volume_frame_size(volume) + k0 * slice, (k1 - k0) * slice);
 }

@@ -58,7 +58,11 @@ size_t hewn_volume_stretch(const hewn_volume *volume, uint64_t frame, uint64_t i
 {
     uint64_t size = hewn_volume_frame_size(volume), begin = index * HEWN_VOXEL_STRETCH;
     size_t count = size - begin < HEWN_VOXEL_STRETCH ? (size_t)(size - begin) : HEWN_VOXEL_STRETCH;
+    enum { KEPT = 1024 }; /* stretches */
     hewn_voxels_to_double(volume, frame * size + begin, count, out);
+    if (index % KEPT == KEPT - 1)
+        hewn_volume_forget_samples(volume, frame * size + begin + count - (uint64_t)KEPT * HEWN_VOXEL_STRETCH,
+                                   (uint64_t)KEPT * HEWN_VOXEL_STRETCH);
     return count;
 }
 

@@ -51,7 +51,11 @@ static inline uint64_t hewn_volume_stretches(const hewn_volume *volume)
     return (hewn_volume_frame_size(volume) + HEWN_VOXEL_STRETCH - 1) / HEWN_VOXEL_STRETCH;
 }
 
-/* Stretch `index` of a frame as doubles; how many samples it has. */
+/* As hewn_volume_forget(), for samples `at` to `at + count - 1` of all. */
+void hewn_volume_forget_samples(const hewn_volume *volume, uint64_t at, uint64_t count);
+
+/* Stretch `index` of a frame as doubles; how many samples it has. What lies well before it in a file is let go, so that
+ * whoever goes through a frame in order takes little memory. */
 size_t hewn_volume_stretch(const hewn_volume *volume, uint64_t frame, uint64_t index, double out[HEWN_VOXEL_STRETCH]);
 
 #endif
