@@ -12,6 +12,8 @@
 #include "hewn/io.h"
 #include "hewn/job.h"
 #include "hewn/labels.h"
+#include "hewn/lod.h"
+#include "hewn/lod_job.h"
 #include "hewn/mesh.h"
 #include "hewn/mesh_views.h"
 #include "hewn/model.h"

@@ -92,6 +92,13 @@ typedef struct hewn_object {
 HEWN_API hewn_result hewn_objects_write_glb(const hewn_object *objects, size_t count, const int64_t *numbers,
                                             const char *path, const hewn_progress *progress, hewn_error *error);
 
+/* Writes levels of detail, from fine to coarse, as one GLB file: the first is the scene's, and names the others as its
+ * levels (extension MSFT_lod). `coverages`, as many as levels, are the least share of the picture's height that each is
+ * meant for, falling (MSFT_screencoverage in the first node's extras). Each level keeps what hewn_model_write() keeps.
+ * `desc` may be NULL; its format is not looked at. Errors as of hewn_model_write(), HEWN_INVALID_ARGUMENT for none. */
+HEWN_API hewn_result hewn_levels_write_glb(const hewn_model *const *levels, const double *coverages, uint32_t count,
+                                           const char *path, const hewn_write_desc *desc, hewn_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -65,6 +65,16 @@ typedef struct hewn_format_writer {
 extern const hewn_format_writer hewn_glb_writer, hewn_obj_writer, hewn_ply_writer, hewn_stl_writer, hewn_off_writer,
     hewn_3mf_writer;
 
+/* A model's job, without triangles cut of polygons and without a name. */
+hewn_writing hewn_writing_of(const hewn_model *model, const hewn_write_desc *desc);
+
+/* The name given, or the file's without folder and extension, with control characters blanked: names stand in lines.
+ * The caller's (hewn_free); NULL when out of memory. */
+char *hewn_object_name(const char *given, const char *path);
+
+/* HEWN_BAD_INPUT for a number of a channel that is not finite. */
+hewn_result hewn_writing_check(const hewn_writing *job, hewn_error *error);
+
 /* How much is written between two looks at the progress callback. */
 enum { HEWN_WRITE_BLOCK = 1 << 12 }; /* items */
 

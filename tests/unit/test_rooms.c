@@ -27,6 +27,7 @@ static const room rooms[] = {
     {"labels", "base geom volume mesh smooth"},
     {"subdivide", "base geom mesh"},
     {"simplify", "base geom mesh"},
+    {"lod", "base geom mesh simplify"},
     {"field", "base geom"},
     {"lanes", "base field"},
     {"gpu", "base"},
@@ -35,7 +36,7 @@ static const room rooms[] = {
     {"render", "base geom field lanes gpu eval"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field lanes gpu eval iso render scene io"},
+    {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod field lanes gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -69,6 +70,8 @@ static const header headers[] = {
     {"volume_io", "io"},
     {"simplify", "simplify"},
     {"distance", "mesh"},
+    {"lod", "lod"},
+    {"lod_job", "pipeline"},
     {"volume_extract", "iso"},
     {"volume_job", "pipeline"},
     {"labels", "labels"},

@@ -1,0 +1,160 @@
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/file_arguments.h"
+#include "app/number.h"
+#include "app/simplify_arguments.h"
+#include "base/error.h"
+
+enum { MOST_LEVELS = 64 };
+
+static const hewn_option options[] = {
+    {'o', "output", "FILE",
+     "Write a .glb file with all levels, or with {level} in the name a file a level (.glb, .obj, .ply, .stl, .off, "
+     ".3mf). Required."},
+    {0, "levels", "LIST",
+     "Levels with these shares of the triangles, falling, with commas between; 1 is the mesh itself. Default: "
+     "1,0.5,0.25,0.125."},
+    {0, "errors", "LIST",
+     "Levels that go no further than these lengths away, rising, in the input's unit, which is proven; 0 is the mesh "
+     "itself."},
+    {0, "pixels", "P",
+     "Levels in a GLB file are meant for sizes at which their error shows as P lines of a picture or less. Default: "
+     "1."},
+    {0, "lines", "N", "That picture has N lines. Default: 1080."},
+    HEWN_OPTIONS_SIMPLIFY_MANNER,
+    HEWN_OPTIONS_FRAME,
+    HEWN_OPTION_FROM,
+    {0, "to", "FORMAT", "Write the levels as glb, obj, ply, stl, off or 3mf. Default: by the output's extension."},
+    HEWN_OPTION_REPORT,
+    HEWN_OPTION_QUIET,
+    HEWN_OPTION_HELP,
+};
+
+typedef struct lod_request {
+    hewn_file_arguments file;
+    hewn_lod_job_desc desc;
+    double numbers[MOST_LEVELS];
+} lod_request;
+
+/* --- the command line --------------------------------------------------------------------------------------------- */
+
+static hewn_result read_numbers(const char *text, const char *option, double *out, uint32_t *count, hewn_error *error)
+{
+    char number[64];
+    *count = 0;
+    for (const char *at = text; at;) {
+        size_t length = strcspn(at, ",");
+        if (*count == MOST_LEVELS)
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s takes %d numbers at the most", option, MOST_LEVELS);
+        if (length >= sizeof number)
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s takes numbers, not '%s'", option, at);
+        memcpy(number, at, length);
+        number[length] = '\0';
+        HEWN_TRY(hewn_number_parse(number, option, &out[(*count)++], error));
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    return HEWN_OK;
+}
+
+static hewn_result read_levels(const hewn_arguments *arguments, lod_request *request, hewn_error *error)
+{
+    const char *levels = hewn_arguments_value(arguments, "levels"), *errors = hewn_arguments_value(arguments, "errors");
+    hewn_lod_desc *desc = &request->desc.levels;
+    if (levels && errors)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--levels and --errors exclude each other");
+    HEWN_TRY(read_numbers(errors   ? errors
+                          : levels ? levels
+                                   : "1,0.5,0.25,0.125",
+                          errors ? "--errors" : "--levels", request->numbers, &desc->count, error));
+    desc->ratios = errors ? NULL : request->numbers;
+    desc->errors = errors ? request->numbers : NULL;
+    return hewn_lod_desc_check(desc, error);
+}
+
+static hewn_result read_positive(const hewn_arguments *arguments, const char *name, double *out, hewn_error *error)
+{
+    const char *text = hewn_arguments_value(arguments, name);
+    if (!text)
+        return HEWN_OK;
+    HEWN_TRY(hewn_number_parse(text, name, out, error));
+    return *out > 0 ? HEWN_OK
+                    : hewn_fail(error, HEWN_INVALID_ARGUMENT, "--%s must be greater than 0, not %s", name, text);
+}
+
+static hewn_result read_request(const hewn_arguments *arguments, lod_request *out, hewn_error *error)
+{
+    *out = (lod_request){0};
+    HEWN_TRY(hewn_file_arguments_read(arguments, &out->file, error));
+    const hewn_file_job_desc *file = &out->file.desc;
+    out->desc = (hewn_lod_job_desc){.input = file->input,
+                                    .from = file->from,
+                                    .output = file->output,
+                                    .to = file->to,
+                                    .report = file->report,
+                                    .unit = file->unit,
+                                    .up = file->up,
+                                    .to_unit = file->to_unit,
+                                    .to_up = file->to_up};
+    HEWN_TRY(read_levels(arguments, out, error));
+    HEWN_TRY(read_positive(arguments, "pixels", &out->desc.pixels, error));
+    HEWN_TRY(read_positive(arguments, "lines", &out->desc.lines, error));
+    return hewn_simplify_manner_read(arguments, &out->desc.levels.simplify, error);
+}
+
+/* --- running ------------------------------------------------------------------------------------------------------ */
+
+static void print_summary(const hewn_lod_report *report)
+{
+    fprintf(stderr, "%s: %u levels of %" PRIu64 " triangles in %.2f s\n", report->output, report->level_count,
+            report->triangles_before, report->seconds);
+    for (uint32_t i = 0; i < report->level_count; i++) {
+        const hewn_lod_report_level *level = &report->levels[i];
+        fprintf(stderr, "  %2u %9" PRIu64 " triangles; nowhere more than %.4g away; from %.3g of the picture's height",
+                i, level->triangles, level->error, level->coverage);
+        fprintf(stderr, "%s%s\n", level->output ? ": " : "", level->output ? level->output : "");
+        if (!level->reached)
+            fprintf(stderr, "hewn: note: fewer than %" PRIu64 " triangles are not possible here\n", level->triangles);
+    }
+}
+
+static int run(const hewn_command *command, const hewn_arguments *arguments)
+{
+    hewn_error error = {0};
+    lod_request request;
+    hewn_lod_report report = {0};
+    hewn_result result = read_request(arguments, &request, &error);
+    if (result != HEWN_OK)
+        return hewn_report_misuse(command, &error);
+    hewn_signals_catch();
+    hewn_progress progress = hewn_progress_begin(request.file.quiet);
+    request.desc.progress = &progress;
+    request.desc.began = hewn_started();
+    result = hewn_lod_file(&request.desc, &report, &error);
+    hewn_progress_end();
+    if (result != HEWN_OK)
+        return hewn_report_misuse(command, &error);
+    if (!request.file.quiet)
+        print_summary(&report);
+    hewn_lod_report_destroy(&report);
+    return 0;
+}
+
+const hewn_command hewn_command_lod = {
+    .name = "lod",
+    .summary = "make levels of detail of a mesh file",
+    .usage = "FILE -o FILE [OPTION]...",
+    .about = "Reads a mesh (.glb, .gltf, .obj, .ply, .stl, .off, also with .gz) and writes it\n"
+             "in levels of detail, each with a proven distance from the mesh: in one GLB\n"
+             "file (extension MSFT_lod, with screen coverages), or as a file a level.\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .after = "Examples:\n"
+             "  hewn lod scan.ply -o scan.glb --levels 1,0.5,0.25,0.1\n"
+             "  hewn lod part.stl -o 'part-{level}.ply' --errors 0,0.05,0.2\n"
+             "  hewn lod chair.obj -o chair.glb --pixels 2 --report report.json\n",
+    .run = run,
+};
