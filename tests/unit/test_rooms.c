@@ -28,6 +28,7 @@ static const room rooms[] = {
     {"subdivide", "base geom mesh"},
     {"simplify", "base geom mesh"},
     {"lod", "base geom mesh simplify"},
+    {"progressive", "base geom mesh"},
     {"field", "base geom"},
     {"lanes", "base field"},
     {"gpu", "base"},
@@ -35,8 +36,8 @@ static const room rooms[] = {
     {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field lanes gpu eval"},
     {"scene", "base geom field"},
-    {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod field lanes gpu eval iso render scene io"},
+    {"io", "base geom volume mesh progressive"},
+    {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod progressive field lanes gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -71,6 +72,7 @@ static const header headers[] = {
     {"simplify", "simplify"},
     {"distance", "mesh"},
     {"lod", "lod"},
+    {"progressive", "progressive"},
     {"lod_job", "pipeline"},
     {"volume_extract", "iso"},
     {"volume_job", "pipeline"},
