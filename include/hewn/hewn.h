@@ -19,6 +19,7 @@
 #include "hewn/model.h"
 #include "hewn/picture.h"
 #include "hewn/progressive.h"
+#include "hewn/progressive_job.h"
 #include "hewn/render.h"
 #include "hewn/render_job.h"
 #include "hewn/repair.h"

@@ -13,7 +13,8 @@ extern "C" {
  * ratios: shares of the input's triangles, falling, above 0 to 1; 1 is the input itself. errors: lengths in the model's
  * unit, rising, 0 (the input itself) or more; no point of either surface is further from the other.
  *
- * simplify: how (locks, what is preserved, self-intersections, progress); its targets and `measure` are not looked at. */
+ * simplify: how (locks, what is preserved, self-intersections, progress); its targets and `measure` are not looked at.
+ */
 typedef struct hewn_lod_desc {
     const double *ratios;
     const double *errors;

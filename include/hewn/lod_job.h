@@ -15,13 +15,13 @@ extern "C" {
  * own, in any format, with its number (0 is the first) there. pixels, lines: levels in a GLB file are meant for a size
  * at which their error is no more than so many lines of a picture of so many; 0: 1 and 1080. */
 typedef struct hewn_lod_job_desc {
-    const char *input;       /* "-" is standard input */
-    hewn_mesh_format from;   /* HEWN_MESH_UNKNOWN: from the input's extension */
-    const char *output;      /* not "-" */
-    hewn_mesh_format to;     /* HEWN_MESH_UNKNOWN: from the output's extension */
-    const char *report;      /* file for the report as JSON, written last; "-" is standard output; NULL: none */
-    const hewn_unit *unit;   /* these four as in hewn_file_job_desc */
-    const hewn_axis *up;     /* */
+    const char *input;     /* "-" is standard input */
+    hewn_mesh_format from; /* HEWN_MESH_UNKNOWN: from the input's extension */
+    const char *output;    /* not "-" */
+    hewn_mesh_format to;   /* HEWN_MESH_UNKNOWN: from the output's extension */
+    const char *report;    /* file for the report as JSON, written last; "-" is standard output; NULL: none */
+    const hewn_unit *unit; /* these four as in hewn_file_job_desc */
+    const hewn_axis *up;   /* */
     const hewn_unit *to_unit;
     const hewn_axis *to_up;
     hewn_lod_desc levels; /* errors are in the input's unit; labels, frozen and progress are not looked at */

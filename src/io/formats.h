@@ -23,6 +23,7 @@ hewn_result hewn_gltf_read(const hewn_source *source, hewn_model *out, hewn_erro
 hewn_result hewn_obj_read(const hewn_source *source, hewn_model *out, hewn_error *error);
 hewn_result hewn_off_read(const hewn_source *source, hewn_model *out, hewn_error *error);
 hewn_result hewn_ply_read(const hewn_source *source, hewn_model *out, hewn_error *error);
+hewn_result hewn_hpm_read(const hewn_source *source, hewn_model *out, hewn_error *error);
 hewn_result hewn_stl_read(const hewn_source *source, hewn_model *out, hewn_error *error);
 
 /* --- writers ------------------------------------------------------------------------------------------------------ */

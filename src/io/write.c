@@ -17,6 +17,7 @@ static const hewn_format_writer *writer_of(hewn_mesh_format format)
     case HEWN_MESH_OFF: return &hewn_off_writer;
     case HEWN_MESH_3MF: return &hewn_3mf_writer;
     case HEWN_MESH_GLTF:
+    case HEWN_MESH_HPM:
     case HEWN_MESH_UNKNOWN: break;
     }
     return NULL;
@@ -224,21 +225,21 @@ static bool is_all_float(const hewn_model *model)
 hewn_writing hewn_writing_of(const hewn_model *model, const hewn_write_desc *wanted)
 {
     return (hewn_writing){.vertex_count = model->vertex_count,
-                        .face_count = model->face_count,
-                        .corner_count = hewn_model_corner_count(model),
-                        .doubles = model->positions,
-                        .all_float = is_all_float(model),
-                        .first = model->first,
-                        .each = 3,
-                        .corners = model->corners,
-                        .triangle_count = model->face_count,
-                        .channels = model->channels,
-                        .channel_count = model->channel_count,
-                        .unit = model->unit ? model->unit : wanted->unit,
-                        .up = model->up_known ? model->up : wanted->up,
-                        .up_known = model->up_known || wanted->unit,
-                        .space = wanted->space,
-                        .progress = wanted->progress};
+                          .face_count = model->face_count,
+                          .corner_count = hewn_model_corner_count(model),
+                          .doubles = model->positions,
+                          .all_float = is_all_float(model),
+                          .first = model->first,
+                          .each = 3,
+                          .corners = model->corners,
+                          .triangle_count = model->face_count,
+                          .channels = model->channels,
+                          .channel_count = model->channel_count,
+                          .unit = model->unit ? model->unit : wanted->unit,
+                          .up = model->up_known ? model->up : wanted->up,
+                          .up_known = model->up_known || wanted->unit,
+                          .space = wanted->space,
+                          .progress = wanted->progress};
 }
 
 hewn_result hewn_model_write(const hewn_model *model, const char *path, const hewn_write_desc *desc, hewn_error *error)

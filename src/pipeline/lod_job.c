@@ -195,8 +195,8 @@ static hewn_result write_together(lod_job *job, const hewn_write_desc *desc, hew
 {
     const hewn_model **models = hewn_alloc(job->count, sizeof *models);
     double *coverages = hewn_alloc(job->count, sizeof *coverages);
-    hewn_result result = models && coverages ? HEWN_OK
-                                             : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the levels");
+    hewn_result result =
+        models && coverages ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the levels");
     for (uint32_t i = 0; result == HEWN_OK && i < job->count; i++) {
         models[i] = &job->levels[i].model;
         coverages[i] = job->report->levels[i].coverage;

@@ -385,10 +385,9 @@ static void get_changes(reader *from, uint32_t parent, uint32_t first_wedge, uin
             find_fault(from, "a split changes a corner that is not its parent's");
             return;
         }
-        const uint32_t offset =
-            to->corner_values
-                ? get_index(from, to->wedge_count - first_wedge, "a split gives a corner that does not exist")
-                : 0;
+        const uint32_t offset = to->corner_values ? get_index(from, to->wedge_count - first_wedge,
+                                                              "a split gives a corner that does not exist")
+                                                  : 0;
         to->changes[to->change_count++] =
             (progressive_change){(uint32_t)corner, from->current[corner], first_wedge + offset};
         from->current[corner] = first_wedge + offset;
@@ -556,7 +555,8 @@ static hewn_result get_all(reader *from, size_t length, bool partial, hewn_error
     int stage = 0;
     hewn_result result;
     if (length < PROGRESSIVE_START || memcmp(from->bytes, PROGRESSIVE_MAGIC, 8) != 0)
-        return hewn_fail_at(error, HEWN_BAD_INPUT, from->name, 0, "this is no progressive mesh: it does not begin as one");
+        return hewn_fail_at(error, HEWN_BAD_INPUT, from->name, 0,
+                            "this is no progressive mesh: it does not begin as one");
     from->at = from->bytes + 8;
     from->end = end;
     const uint64_t version = get_low_first(from, 4);

@@ -115,9 +115,9 @@ static void put_channels(const hewn_progressive *from, hewn_text *to)
 
 static void put_head(const hewn_progressive *from, bool floats, hewn_text *to)
 {
-    const uint64_t counts[] = {from->full_vertices,  from->full_wedges, from->full_triangles,
-                               from->full_splits,    from->faces,       from->corners,
-                               from->base_vertices,  from->base_wedges, from->base_triangles};
+    const uint64_t counts[] = {from->full_vertices, from->full_wedges, from->full_triangles,
+                               from->full_splits,   from->faces,       from->corners,
+                               from->base_vertices, from->base_wedges, from->base_triangles};
     put_low_first(to,
                   (floats ? PROGRESSIVE_FLOATS : 0u) | (from->polygons ? PROGRESSIVE_POLYGONS : 0u) |
                       (from->shape.up_known ? PROGRESSIVE_UP_KNOWN : 0u),

@@ -197,7 +197,8 @@ static hewn_result make_labels(fold *of, hewn_error *error)
             return no_memory(error);
         for (uint32_t t = 0; t < of->triangle_count; t++)
             for (uint32_t k = 0; k < channel->info.components; k++) {
-                const int32_t value = ((const int32_t *)channel->values)[(size_t)of->faces[t] * channel->info.components + k];
+                const int32_t value =
+                    ((const int32_t *)channel->values)[(size_t)of->faces[t] * channel->info.components + k];
                 of->labels[t] = (int32_t)((uint32_t)of->labels[t] * 0x9E3779B1u + (uint32_t)value);
             }
     }

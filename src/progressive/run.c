@@ -202,8 +202,8 @@ static hewn_result run_queue(fold *of, queue *in, uint64_t least, const hewn_pro
     for (uint32_t steps = 0; in->count > 0 && of->live_triangles > least; steps++) {
         HEWN_TRY(step(of, in, error));
         if (steps % 4096 == 0)
-            HEWN_TRY(hewn_progress_report(progress, "simplify",
-                                          1 - (double)(of->live_triangles - least) / (double)all, error));
+            HEWN_TRY(hewn_progress_report(progress, "simplify", 1 - (double)(of->live_triangles - least) / (double)all,
+                                          error));
     }
     return HEWN_OK;
 }
@@ -215,7 +215,8 @@ hewn_result hewn_fold_run(fold *of, uint64_t triangles, const hewn_progress *pro
     if (!in.keys)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a progressive mesh");
     hewn_result result = HEWN_OK;
-    for (size_t before = HEWN_NONE; result == HEWN_OK && of->live_triangles > triangles && before != of->record_count;) {
+    for (size_t before = HEWN_NONE;
+         result == HEWN_OK && of->live_triangles > triangles && before != of->record_count;) {
         before = of->record_count;
         in.count = 0;
         result = run_queue(of, &in, triangles, progress, error);

@@ -147,7 +147,8 @@ bool hewn_fold_feature(const fold *of, const fold_star *star, uint32_t i)
 
 /* --- what is allowed ---------------------------------------------------------------------------------------------- */
 
-/* The wedge of neighbour i that takes the place of one of the vertex' own; HEWN_NONE: it is not told, or in two ways. */
+/* The wedge of neighbour i that takes the place of one of the vertex' own; HEWN_NONE: it is not told, or in two ways.
+ */
 static uint32_t wedge_for(const fold_star *star, uint32_t i, uint32_t own)
 {
     const uint32_t a = before(star, i), b = after(star, i);
@@ -217,6 +218,37 @@ static bool keeps_topology(fold *of, uint32_t vertex, const fold_star *star, uin
     if (star->open && star->count == 1) /* its only triangle goes: another must hold the far edge */
         return third;
     return !(star->count == 3 && !star->open && third);
+}
+
+/* Whether the edge from a triangle's corner `from` to `to` is a feature: another triangle does not go on there. */
+static bool breaks_across(const fold *of, uint32_t triangle, uint32_t from, uint32_t to)
+{
+    const uint32_t v = vertex_of(of, from), w = vertex_of(of, to);
+    const uint32_t *list = of->pool + of->list_first[v];
+    for (uint32_t i = 0; i < of->list_count[v]; i++) {
+        const uint32_t *corner = of->triangles + 3 * (size_t)list[i];
+        uint32_t at_v = HEWN_NONE, at_w = HEWN_NONE;
+        if (of->removed[list[i]] || list[i] == triangle)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            at_v = vertex_of(of, corner[k]) == v ? corner[k] : at_v;
+            at_w = vertex_of(of, corner[k]) == w ? corner[k] : at_w;
+        }
+        if (at_v != HEWN_NONE && at_w != HEWN_NONE)
+            return at_v != from || at_w != to || (of->labels && of->labels[list[i]] != of->labels[triangle]);
+    }
+    return true;
+}
+
+/* The link condition of lines: the triangles that go must not lay one line upon another. */
+static bool keeps_lines(const fold *of, const fold_star *star, uint32_t i)
+{
+    const uint32_t a = before(star, i), b = after(star, i);
+    if (a != HEWN_NONE && hewn_fold_feature(of, star, a) &&
+        breaks_across(of, star->triangle[a], star->previous[a], star->next[a]))
+        return false;
+    return b == HEWN_NONE || !hewn_fold_feature(of, star, b + 1 == star->count && !star->open ? 0 : b + 1) ||
+           !breaks_across(of, star->triangle[b], star->next[b], star->previous[b]);
 }
 
 static bool keeps_shape(const fold *of, uint32_t vertex, const fold_star *star, uint32_t i)
@@ -348,7 +380,8 @@ uint32_t hewn_fold_choose(fold *of, uint32_t vertex, fold_star *star, double *co
         const double at = cost_of(of, vertex, hewn_fold_neighbour(of, star, i));
         if (best != HEWN_NONE && !(at < *cost))
             continue;
-        if (!has_wedges(star, i) || !keeps_shape(of, vertex, star, i) || !keeps_topology(of, vertex, star, i))
+        if (!has_wedges(star, i) || (features > 0 && !keeps_lines(of, star, i)) || !keeps_shape(of, vertex, star, i) ||
+            !keeps_topology(of, vertex, star, i))
             continue;
         best = i;
         *cost = at;

@@ -53,7 +53,8 @@ static void put_vertex(const hewn_progressive *from, uint32_t v, uint64_t to, he
 {
     memcpy(out->positions + 3 * to, from->positions + 3 * (size_t)v, 3 * sizeof(double));
     if (from->row[HEWN_DOMAIN_VERT] > 0)
-        hewn_progressive_row_put(out, HEWN_DOMAIN_VERT, to, from->vertex_rows + (size_t)v * from->row[HEWN_DOMAIN_VERT]);
+        hewn_progressive_row_put(out, HEWN_DOMAIN_VERT, to,
+                                 from->vertex_rows + (size_t)v * from->row[HEWN_DOMAIN_VERT]);
 }
 
 static void put_corner(const hewn_progressive *from, uint32_t wedge, uint64_t to, hewn_model *out)
@@ -129,7 +130,8 @@ static hewn_result unfold_all(const hewn_progressive *from, hewn_model *out, hew
     if (from->polygons) {
         out->first = hewn_alloc(from->faces + 1, sizeof *out->first);
         if (!out->first)
-            return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu faces", (unsigned long long)from->faces);
+            return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu faces",
+                             (unsigned long long)from->faces);
         memcpy(out->first, from->polygon_first, (from->faces + 1) * sizeof *out->first);
     }
     HEWN_TRY(add_channels(from, out, error));
@@ -155,8 +157,7 @@ hewn_result hewn_progressive_model(const hewn_progressive *progressive, uint64_t
     *out = (hewn_model){0};
     HEWN_TRY(check_splits(progressive, splits, error));
     const bool all = progressive->complete && splits == progressive->full_splits;
-    hewn_result result =
-        all ? unfold_all(progressive, out, error) : unfold_part(progressive, splits, out, error);
+    hewn_result result = all ? unfold_all(progressive, out, error) : unfold_part(progressive, splits, out, error);
     if (result != HEWN_OK)
         hewn_model_destroy(out);
     return result;
@@ -180,7 +181,8 @@ hewn_result hewn_progressive_geomorph(const hewn_progressive *progressive, uint6
         return result;
     }
     for (size_t v = 0; v < all; v++) /* parents come before their children */
-        (*ancestors)[v] = v < kept ? (uint32_t)v : (*ancestors)[progressive->splits[v - progressive->base_vertices].parent];
+        (*ancestors)[v] =
+            v < kept ? (uint32_t)v : (*ancestors)[progressive->splits[v - progressive->base_vertices].parent];
     return HEWN_OK;
 }
 

@@ -119,9 +119,8 @@ static void add_split(const fold *of, size_t i, numbers *by, hewn_progressive *o
     progressive_change *changes = out->changes + out->change_count;
     for (size_t k = record->first_change; k < change_end; k++) {
         const progressive_change *from = &of->changes[k];
-        out->changes[out->change_count++] =
-            (progressive_change){3 * by->triangles[from->corner / 3] + from->corner % 3, by->wedges[from->before],
-                                 by->wedges[from->after]};
+        out->changes[out->change_count++] = (progressive_change){3 * by->triangles[from->corner / 3] + from->corner % 3,
+                                                                 by->wedges[from->before], by->wedges[from->after]};
     }
     qsort(changes, change_end - record->first_change, sizeof *changes, compare_changes);
 }

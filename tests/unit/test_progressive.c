@@ -30,8 +30,8 @@ static hewn_check *check_of(const hewn_model *model)
 {
     hewn_check *check;
     const hewn_polygons polygons = hewn_model_polygons(model);
-    assert_int_equal(
-        hewn_check_polygons(&polygons, &(hewn_check_desc){.skip_self_intersections = true}, &check, NULL), HEWN_OK);
+    assert_int_equal(hewn_check_polygons(&polygons, &(hewn_check_desc){.skip_self_intersections = true}, &check, NULL),
+                     HEWN_OK);
     return check;
 }
 
@@ -216,6 +216,41 @@ static void test_attributes_come_back(void **state)
     }
 }
 
+/* Two halves of a sheet with labels of their own: neither goes, and the line between them stays one line. */
+static void test_labels_stay(void **state)
+{
+    (void)state;
+    hewn_model model = make_sheet(20);
+    int32_t *label = add_channel(&model, "label", HEWN_DOMAIN_FACE, HEWN_SCALAR_INT32, 1)->values;
+    for (uint64_t f = 0; f < model.face_count; f++)
+        label[f] = f < model.face_count / 2 ? 5 : 7;
+    hewn_progressive *made = make_progressive(&model, NULL);
+    const uint64_t splits = hewn_progressive_about(made).splits;
+    assert_true(hewn_progressive_about(made).base_triangles < 20);
+    for (uint64_t i = 0; i <= splits; i += i < 20 ? 1 : 17) {
+        hewn_model part = model_at(made, i), half = part;
+        const hewn_channel *channel = hewn_model_find_channel(&part, HEWN_DOMAIN_FACE, "label");
+        for (int side = 0; side < 2; side++) {
+            uint32_t *corners = hewn_alloc(3 * part.face_count, sizeof *corners);
+            half.corners = corners;
+            half.face_count = 0;
+            for (uint64_t f = 0; f < part.face_count; f++)
+                if (((const int32_t *)channel->values)[f] == 5 + 2 * side)
+                    memcpy(corners + 3 * half.face_count++, part.corners + 3 * f, 3 * sizeof *corners);
+            assert_true(half.face_count > 0);
+            hewn_check *check = check_of(&half);
+            assert_int_equal(check->certificate.components, 1);
+            assert_int_equal(check->boundary_loops, 1);
+            assert_true(check->certificate.manifold);
+            hewn_check_destroy(&check);
+            hewn_free(corners);
+        }
+        hewn_model_destroy(&part);
+    }
+    hewn_progressive_destroy(&made);
+    hewn_model_destroy(&model);
+}
+
 /* --- soups -------------------------------------------------------------------------------------------------------- */
 
 /* What is not manifold, names a vertex twice or has no face comes back all the same. */
@@ -382,6 +417,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_mesh_on_the_way_is_sound),
         cmocka_unit_test(test_attributes_come_back),
+        cmocka_unit_test(test_labels_stay),
         cmocka_unit_test(test_soups_come_back),
         cmocka_unit_test(test_targets_and_marks),
         cmocka_unit_test(test_geomorphs),

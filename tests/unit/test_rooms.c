@@ -74,6 +74,7 @@ static const header headers[] = {
     {"lod", "lod"},
     {"progressive", "progressive"},
     {"lod_job", "pipeline"},
+    {"progressive_job", "pipeline"},
     {"volume_extract", "iso"},
     {"volume_job", "pipeline"},
     {"labels", "labels"},
