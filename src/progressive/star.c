@@ -193,12 +193,25 @@ static uint32_t count_common(fold *of, uint32_t vertex, uint32_t center, uint32_
     return common;
 }
 
+/* Whether neighbour i would get an edge to another vertex of the border, which may be there out of sight too. */
+static bool joins_borders(const fold *of, const fold_star *star, uint32_t i)
+{
+    const uint32_t around = star->count + (star->open ? 1 : 0), last = around - 1;
+    const uint32_t a = i > 0 ? i - 1 : star->open ? i : last, b = i < last ? i + 1 : star->open ? i : 0;
+    for (uint32_t k = 0; k < around; k++)
+        if (k != i && k != a && k != b && of->states[hewn_fold_neighbour(of, star, k)] == FOLD_BORDER)
+            return true;
+    return false;
+}
+
 /* The link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999): the two vertices have no neighbours in common but
  * those of the triangles that go. */
 static bool keeps_topology(fold *of, uint32_t vertex, const fold_star *star, uint32_t i)
 {
     const uint32_t v = hewn_fold_neighbour(of, star, i), around = star->count + (star->open ? 1 : 0);
-    if (of->states[v] != FOLD_FREE)
+    if (of->states[v] != FOLD_FREE && of->states[v] != FOLD_BORDER)
+        return false;
+    if (of->states[v] == FOLD_BORDER && joins_borders(of, star, i))
         return false;
     if (of->stamp > UINT32_MAX - 4) {
         memset(of->stamps, 0, of->vertex_count * sizeof *of->stamps);

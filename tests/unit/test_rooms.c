@@ -29,6 +29,7 @@ static const room rooms[] = {
     {"simplify", "base geom mesh"},
     {"lod", "base geom mesh simplify"},
     {"progressive", "base geom mesh"},
+    {"clusters", "base geom mesh progressive"},
     {"field", "base geom"},
     {"lanes", "base field"},
     {"gpu", "base"},
@@ -36,8 +37,8 @@ static const room rooms[] = {
     {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field lanes gpu eval"},
     {"scene", "base geom field"},
-    {"io", "base geom volume mesh progressive"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod progressive field lanes gpu eval iso render scene io"},
+    {"io", "base geom volume mesh progressive clusters"},
+    {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod progressive clusters field lanes gpu eval iso render scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -73,6 +74,7 @@ static const header headers[] = {
     {"distance", "mesh"},
     {"lod", "lod"},
     {"progressive", "progressive"},
+    {"clusters", "clusters"},
     {"lod_job", "pipeline"},
     {"progressive_job", "pipeline"},
     {"volume_extract", "iso"},
