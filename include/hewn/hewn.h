@@ -5,6 +5,7 @@
 #include "hewn/base.h"
 #include "hewn/check.h"
 #include "hewn/clusters.h"
+#include "hewn/clusters_job.h"
 #include "hewn/device.h"
 #include "hewn/distance.h"
 #include "hewn/extract.h"

@@ -2,6 +2,7 @@
 #ifndef HEWN_IO_H
 #define HEWN_IO_H
 
+#include "hewn/clusters.h"
 #include "hewn/model.h"
 #include "hewn/progressive.h"
 
@@ -100,6 +101,13 @@ HEWN_API hewn_result hewn_objects_write_glb(const hewn_object *objects, size_t c
 HEWN_API hewn_result hewn_progressive_read(const char *path, bool partial, const hewn_progress *progress,
                                            hewn_progressive **out, hewn_error *error);
 HEWN_API hewn_result hewn_progressive_write(const hewn_progressive *progressive, const char *path, hewn_error *error);
+
+/* Writes clusters of a model as a GLB file: the mesh is that of the finest level, so that any reader shows it, and what
+ * is needed for the others stands in its extras (docs/lod.md). Positions of the model are rounded to floats, attributes
+ * kept as hewn_model_write() keeps them. The model is in metres, +Y up. Errors as of hewn_model_write(). `desc` may be
+ * NULL; its format is not looked at. */
+HEWN_API hewn_result hewn_clusters_write_glb(const hewn_clusters *clusters, const hewn_model *model, const char *path,
+                                             const hewn_write_desc *desc, hewn_error *error);
 
 /* Writes levels of detail, from fine to coarse, as one GLB file: the first is the scene's, and names the others as its
  * levels (extension MSFT_lod). `coverages`, as many as levels, are the least share of the picture's height that each is

@@ -29,6 +29,10 @@ static const hewn_option options[] = {
      "The progressive mesh begins with N triangles, or as many more as it must; or, where the input is one, take its "
      "mesh of at most N."},
     {0, "error", "LENGTH", "Take the coarsest measured mesh of a progressive one that is proven to be this near."},
+    {0, "clusters", NULL,
+     "Write a .glb file with the mesh cut into clusters, and a hierarchy of coarser ones in its extras, for renderers "
+     "that choose levels by the cluster."},
+    {0, "cluster-size", "V,T", "Clusters have at most V vertices and T triangles. Default: 64,124."},
     {0, "partial", NULL, "Take a progressive mesh that is cut off as far as it goes."},
     HEWN_OPTIONS_SIMPLIFY_MANNER,
     HEWN_OPTIONS_FRAME,
@@ -43,7 +47,8 @@ typedef struct lod_request {
     hewn_file_arguments file;
     hewn_lod_job_desc desc;
     hewn_progressive_job_desc progressive;
-    bool is_progressive; /* the job is that */
+    hewn_clusters_job_desc clusters;
+    bool is_progressive, is_clusters; /* the job is that; else it is levels */
     double numbers[MOST_LEVELS];
 } lod_request;
 
@@ -134,12 +139,47 @@ static bool is_progressive(const hewn_arguments *arguments, const hewn_file_job_
     return to == HEWN_MESH_HPM || (from == HEWN_MESH_HPM && !levels);
 }
 
+static hewn_result read_clusters(const hewn_arguments *arguments, lod_request *out, hewn_error *error)
+{
+    static const char *const others[] = {"levels", "errors",   "pixels", "lines",
+                                         "lock",   "preserve", "faces",  "error",
+                                         "partial", "no-self-intersections", NULL};
+    const char *size = hewn_arguments_value(arguments, "cluster-size");
+    const hewn_file_job_desc *file = &out->file.desc;
+    double numbers[MOST_LEVELS];
+    uint32_t count = 0;
+    HEWN_TRY(refuse(arguments, others, "does not go with --clusters", error));
+    out->clusters = (hewn_clusters_job_desc){.input = file->input,
+                                             .from = file->from,
+                                             .output = file->output,
+                                             .to = file->to,
+                                             .report = file->report,
+                                             .unit = file->unit,
+                                             .up = file->up,
+                                             .to_unit = file->to_unit,
+                                             .to_up = file->to_up};
+    if (!size)
+        return HEWN_OK;
+    HEWN_TRY(read_numbers(size, "--cluster-size", numbers, &count, error));
+    if (count != 2 || !(numbers[0] >= 3 && numbers[0] <= 255 && numbers[1] >= 1 && numbers[1] <= 512))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "--cluster-size is V,T: 3 to 255 vertices and 1 to 512 triangles, not %s", size);
+    out->clusters.clusters.vertices = (uint32_t)numbers[0];
+    out->clusters.clusters.triangles = (uint32_t)numbers[1];
+    return HEWN_OK;
+}
+
 static hewn_result read_request(const hewn_arguments *arguments, lod_request *out, hewn_error *error)
 {
     static const char *const taking[] = {"faces", "error", "partial", NULL};
+    static const char *const sizes[] = {"cluster-size", NULL};
     *out = (lod_request){0};
     HEWN_TRY(hewn_file_arguments_read(arguments, &out->file, error));
     const hewn_file_job_desc *file = &out->file.desc;
+    out->is_clusters = hewn_arguments_has(arguments, "clusters");
+    if (out->is_clusters)
+        return read_clusters(arguments, out, error);
+    HEWN_TRY(refuse(arguments, sizes, "goes with --clusters only", error));
     out->is_progressive = is_progressive(arguments, file);
     if (out->is_progressive)
         return read_progressive(arguments, out, error);
@@ -218,6 +258,24 @@ static hewn_result run_progressive(lod_request *request, hewn_error *error)
     return result;
 }
 
+static hewn_result run_clusters(lod_request *request, hewn_error *error)
+{
+    hewn_clusters_report report;
+    hewn_result result = hewn_clusters_file(&request->clusters, &report, error);
+    hewn_progress_end();
+    if (result != HEWN_OK)
+        return result;
+    if (!request->file.quiet) {
+        fprintf(stderr, "%s: %u clusters of %" PRIu64 " triangles in %u levels in %.2f s\n", report.output,
+                report.clusters, report.triangles, report.level_count, report.seconds);
+        for (uint32_t i = 0; i < report.level_count; i++)
+            fprintf(stderr, "  %2u %7u clusters, %9" PRIu64 " triangles; nowhere more than %.4g away\n", i,
+                    report.levels[i].clusters, report.levels[i].triangles, report.levels[i].error);
+    }
+    hewn_clusters_report_destroy(&report);
+    return HEWN_OK;
+}
+
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
     hewn_error error = {0};
@@ -227,9 +285,11 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
         return hewn_report_misuse(command, &error);
     hewn_signals_catch();
     hewn_progress progress = hewn_progress_begin(request.file.quiet);
-    request.desc.progress = request.progressive.progress = &progress;
-    request.desc.began = request.progressive.began = hewn_started();
-    result = request.is_progressive ? run_progressive(&request, &error) : run_levels(&request, &error);
+    request.desc.progress = request.progressive.progress = request.clusters.progress = &progress;
+    request.desc.began = request.progressive.began = request.clusters.began = hewn_started();
+    result = request.is_clusters      ? run_clusters(&request, &error)
+             : request.is_progressive ? run_progressive(&request, &error)
+                                      : run_levels(&request, &error);
     return result == HEWN_OK ? 0 : hewn_report_misuse(command, &error);
 }
 
@@ -241,7 +301,8 @@ const hewn_command hewn_command_lod = {
              "in levels of detail, each with a proven distance from the mesh: in one GLB\n"
              "file (extension MSFT_lod, with screen coverages), or as a file a level. Or\n"
              "makes a progressive mesh (.hpm), from which meshes of any number of\n"
-             "triangles are taken, all of them being the input again.\n",
+             "triangles are taken, all of them being the input again. Or cuts the mesh\n"
+             "into clusters with a hierarchy of coarser ones.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
@@ -249,6 +310,7 @@ const hewn_command hewn_command_lod = {
              "  hewn lod part.stl -o 'part-{level}.ply' --errors 0,0.05,0.2\n"
              "  hewn lod chair.obj -o chair.glb --pixels 2 --report report.json\n"
              "  hewn lod scan.ply -o scan.hpm\n"
-             "  hewn lod scan.hpm -o small.ply --faces 5000\n",
+             "  hewn lod scan.hpm -o small.ply --faces 5000\n"
+             "  hewn lod scan.ply -o scan.glb --clusters\n",
     .run = run,
 };

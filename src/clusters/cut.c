@@ -262,6 +262,25 @@ static void grow(clusters_work *work, growth *of, uint32_t seed)
         of->taken[of->fringe[i]] = 0;
 }
 
+/* Where the next cluster begins: beside the last one, at the triangle with the fewest free neighbours, so that no scraps
+ * are left behind. */
+static uint32_t choose_seed(const growth *of)
+{
+    uint32_t best = HEWN_NONE, least = 4;
+    for (size_t i = 0; i < of->fringe_count; i++) {
+        uint32_t open = 0;
+        for (size_t k = 0; k < 3; k++) {
+            const uint32_t next = of->neighbours[3 * (size_t)of->fringe[i] + k];
+            open += next != HEWN_NONE && !of->taken[next];
+        }
+        if (open < least || (open == least && of->fringe[i] < best)) {
+            best = of->fringe[i];
+            least = open;
+        }
+    }
+    return best;
+}
+
 static hewn_result cut(clusters_work *work, growth *of, uint32_t level, const hewn_cluster_bound *self,
                        hewn_error *error)
 {
@@ -273,7 +292,7 @@ static hewn_result cut(clusters_work *work, growth *of, uint32_t level, const he
             return HEWN_OK;
         HEWN_TRY(make_room(work, error));
         grow(work, of, next != HEWN_NONE && !of->taken[next] ? next : scan);
-        next = of->fringe_count > 0 ? of->fringe[0] : HEWN_NONE;
+        next = choose_seed(of);
         finish(work, of, level, self);
     }
 }

@@ -239,6 +239,104 @@ static void test_files_that_are_cut_off(void **state)
     run_folder_destroy(folder);
 }
 
+/* --- clusters ----------------------------------------------------------------------------------------------------- */
+
+/* Where a view of the binary chunk begins. */
+static const char *view_of(const char *glb, const char *json, int view)
+{
+    char path[64];
+    uint32_t text;
+    memcpy(&text, glb + 12, sizeof text);
+    snprintf(path, sizeof path, "bufferViews.%d.byteOffset", view);
+    return glb + 28 + text + (size_t)json_number(json, path);
+}
+
+static uint32_t word(const char *at, size_t index)
+{
+    uint32_t value;
+    memcpy(&value, at + 4 * index, sizeof value);
+    return value;
+}
+
+static float real(const char *at, size_t index)
+{
+    float value;
+    memcpy(&value, at + 4 * index, sizeof value);
+    return value;
+}
+
+/* What a renderer would do with the file alone: the cut for an error everywhere, as an OFF file. */
+static void write_cut(const char *glb, const char *json, double allowed, const char *path)
+{
+    const char *clusters = view_of(glb, json, (int)json_number(json, "meshes.0.extras.hewn_clusters.clusters"));
+    const char *vertices = view_of(glb, json, (int)json_number(json, "meshes.0.extras.hewn_clusters.vertices"));
+    const char *corners = view_of(glb, json, (int)json_number(json, "meshes.0.extras.hewn_clusters.corners"));
+    const char *positions = view_of(glb, json, 0);
+    const int count = (int)json_number(json, "meshes.0.extras.hewn_clusters.count");
+    const int points = (int)json_number(json, "accessors.0.count");
+    int faces = 0;
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    for (int pass = 0; pass < 2; pass++) {
+        if (pass == 1)
+            fprintf(file, "OFF\n%d %d 0\n", points, faces);
+        for (size_t v = 0; pass == 1 && v < (size_t)points; v++)
+            fprintf(file, "%.9g %.9g %.9g\n", (double)real(positions, 3 * v), (double)real(positions, 3 * v + 1),
+                    (double)real(positions, 3 * v + 2));
+        for (int i = 0; i < count; i++) {
+            const char *at = clusters + 80 * (size_t)i;
+            if ((double)real(at, 16) > allowed || (double)real(at, 17) <= allowed)
+                continue;
+            faces += (int)word(at, 3);
+            for (size_t t = 0; pass == 1 && t < word(at, 3); t++) {
+                const unsigned char *corner = (const unsigned char *)corners + 3 * (word(at, 2) + t);
+                fprintf(file, "3 %u %u %u\n", word(vertices, word(at, 0) + corner[0]),
+                        word(vertices, word(at, 0) + corner[1]), word(vertices, word(at, 0) + corner[2]));
+            }
+        }
+    }
+    fclose(file);
+}
+
+static void test_clusters_in_a_file(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    write_ball(run_path(folder, "ball.ply"), 60);
+    char *report = report_of(folder, (run_desc){.arguments = {"lod", "ball.ply", "-o", "c.glb", "--clusters"}});
+    char *json = json_of_glb(folder, "c.glb"), *glb = run_read_file(run_path(folder, "c.glb"), NULL);
+    assert_true(json_number(report, "triangles") == 7080);
+    assert_true(json_number(json, "meshes.0.extras.hewn_clusters.count") == json_number(report, "clusters"));
+    const int levels = (int)json_count(report, "levels");
+    assert_true(levels > 4 && levels == (int)json_number(json, "meshes.0.extras.hewn_clusters.levels"));
+    double last = 1e9;
+    for (int i = 0; i < levels; i++) {
+        const double error = level_number(report, i, "error");
+        write_cut(glb, json, error, run_path(folder, "cut.off"));
+        run_result result = run_in(0, folder, (run_desc){.arguments = {"check", "cut.off", "--json", "--against",
+                                                                       "ball.ply", "--require",
+                                                                       "closed,manifold,oriented,one-component"}});
+        assert_true(json_number(result.out, "distance.low") <= error + json_number(report, "rounding") + 1e-12);
+        assert_true(json_number(result.out, "counts.faces") < last);
+        last = json_number(result.out, "counts.faces");
+        run_result_destroy(&result);
+    }
+    assert_true(last < 500);
+    char *info = info_of(folder, "c.glb");
+    assert_true(json_number(info, "counts.faces") == 7080);
+    free(info);
+    free(glb);
+    free(json);
+    free(report);
+    fail_in(2, folder, "--levels does not go with --clusters",
+            (run_desc){.arguments = {"lod", "ball.ply", "-o", "c.glb", "--clusters", "--levels", "1"}});
+    fail_in(2, folder, "clusters are written as .glb only",
+            (run_desc){.arguments = {"lod", "ball.ply", "-o", "c.ply", "--clusters"}});
+    fail_in(2, folder, "--cluster-size is V,T",
+            (run_desc){.arguments = {"lod", "ball.ply", "-o", "d.glb", "--clusters", "--cluster-size", "300,9"}});
+    run_folder_destroy(folder);
+}
+
 /* --- misuse ------------------------------------------------------------------------------------------------------- */
 
 static void test_misuse(void **state)
@@ -289,6 +387,7 @@ int main(void)
         cmocka_unit_test(test_a_progressive_mesh_gives_the_input_back),
         cmocka_unit_test(test_meshes_are_taken),
         cmocka_unit_test(test_files_that_are_cut_off),
+        cmocka_unit_test(test_clusters_in_a_file),
         cmocka_unit_test(test_misuse),
     };
     return cmocka_run_group_tests_name("lod", tests, NULL, NULL);

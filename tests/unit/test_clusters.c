@@ -136,7 +136,7 @@ static void test_cuts_have_no_cracks(void **state)
             hewn_cluster_view view = {.pixels = 1000};
             double error;
             for (int axis = 0; axis < 3; axis++)
-                view.eye[axis] = 6 * random_unit(&random) - 3;
+                view.eye[axis] = (6 * random_unit(&random) - 3) * (round % 3 == 2 ? 12 : 1);
             view.tolerance = round == 0 ? 0 : pow(10, 4 * random_unit(&random) - 2);
             hewn_model cut = cut_of(&model, &made, &view, &error);
             hewn_check *check = check_of(&cut);

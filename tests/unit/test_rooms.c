@@ -76,6 +76,7 @@ static const header headers[] = {
     {"progressive", "progressive"},
     {"clusters", "clusters"},
     {"lod_job", "pipeline"},
+    {"clusters_job", "pipeline"},
     {"progressive_job", "pipeline"},
     {"volume_extract", "iso"},
     {"volume_job", "pipeline"},

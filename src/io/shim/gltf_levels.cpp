@@ -154,13 +154,33 @@ std::string join(const hewn_text *documents, const uint64_t *binaries, const dou
     return all.dump();
 }
 
-} // namespace
+size_t add_view(json &document, uint64_t offset, uint64_t length)
+{
+    document["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", length}});
+    return document["bufferViews"].size() - 1;
+}
 
-hewn_result hewn_gltf_join_levels(const hewn_text *documents, const uint64_t *binaries, const double *coverages,
-                                  size_t count, hewn_text *out, hewn_error *error)
+std::string add_clusters(const hewn_text &document, const hewn_gltf_clusters &what)
+{
+    json all = json::parse(document.bytes, document.bytes + document.length);
+    if (count_of(all, "meshes") == 0)
+        return all.dump();
+    json &clusters = all["meshes"][0]["extras"]["hewn_clusters"];
+    uint64_t at = what.begin;
+    clusters["version"] = 1;
+    clusters["count"] = what.count;
+    clusters["levels"] = what.level_count;
+    clusters["clusters"] = add_view(all, at, what.cluster_bytes);
+    clusters["vertices"] = add_view(all, at += what.cluster_bytes, what.vertex_bytes);
+    clusters["corners"] = add_view(all, at += what.vertex_bytes, what.corner_bytes);
+    all["buffers"][0]["byteLength"] = at + what.corner_bytes;
+    return all.dump();
+}
+
+template <typename Make> hewn_result guard(Make make, hewn_text *out, hewn_error *error)
 {
     try {
-        std::string text = join(documents, binaries, coverages, count);
+        std::string text = make();
         hewn_text_append_bytes(out, text.data(), text.size());
         return hewn_text_status(out, error);
     } catch (const std::bad_alloc &) {
@@ -168,4 +188,18 @@ hewn_result hewn_gltf_join_levels(const hewn_text *documents, const uint64_t *bi
     } catch (const std::exception &failure) {
         return hewn_fail(error, HEWN_INTERNAL, "glTF's JSON could not be made: %s", failure.what());
     }
+}
+
+} // namespace
+
+hewn_result hewn_gltf_join_levels(const hewn_text *documents, const uint64_t *binaries, const double *coverages,
+                                  size_t count, hewn_text *out, hewn_error *error)
+{
+    return guard([&] { return join(documents, binaries, coverages, count); }, out, error);
+}
+
+hewn_result hewn_gltf_add_clusters(const hewn_text *document, const hewn_gltf_clusters *clusters, hewn_text *out,
+                                   hewn_error *error)
+{
+    return guard([&] { return add_clusters(*document, *clusters); }, out, error);
 }

@@ -16,6 +16,19 @@ extern "C" {
 hewn_result hewn_gltf_join_levels(const hewn_text *documents, const uint64_t *binaries, const double *coverages,
                                   size_t count, hewn_text *out, hewn_error *error);
 
+/* What stands in the binary chunk behind a mesh: clusters, then lists of vertices, then corners, each of so many bytes;
+ * only the last may be no multiple of 4. */
+typedef struct hewn_gltf_clusters {
+    uint64_t begin; /* of the first, in the chunk */
+    uint64_t cluster_bytes, vertex_bytes, corner_bytes;
+    uint32_t count, level_count;
+} hewn_gltf_clusters;
+
+/* `document` with views of that, and their numbers in the extras of its mesh ("hewn_clusters"). Appends to `out`.
+ * HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_gltf_add_clusters(const hewn_text *document, const hewn_gltf_clusters *clusters, hewn_text *out,
+                                   hewn_error *error);
+
 #ifdef __cplusplus
 }
 #endif
