@@ -13,8 +13,8 @@ extern "C" {
 
 /* What to do; zero means the default.
  *
- * vertices, triangles: the most that a cluster has; 64 and 124 by default, at most 255 and 512, at least 3 and 1. group:
- * clusters that are simplified together, 2 to 32, 8 by default. */
+ * vertices, triangles: the most that a cluster has; 64 and 124 by default, at most 255 and 512, at least 3 and 1.
+ * group: clusters that are simplified together, 2 to 32, 8 by default. */
 typedef struct hewn_clusters_desc {
     uint32_t vertices, triangles;
     uint32_t group;
@@ -48,10 +48,10 @@ typedef struct hewn_cluster {
 typedef struct hewn_clusters {
     hewn_cluster *clusters;
     uint32_t count, level_count;
-    uint32_t *vertices;     /* of all clusters, one after the other */
-    uint64_t vertex_count;  /* entries of that */
-    uint8_t *corners;       /* 3 a triangle */
-    uint32_t *faces;        /* the input's face that each triangle is what is left of */
+    uint32_t *vertices;    /* of all clusters, one after the other */
+    uint64_t vertex_count; /* entries of that */
+    uint8_t *corners;      /* 3 a triangle */
+    uint32_t *faces;       /* the input's face that each triangle is what is left of */
     uint64_t triangle_count;
     uint32_t *vertex_origins, *corner_origins;
     uint32_t unique_count; /* entries of those two */

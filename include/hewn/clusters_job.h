@@ -20,7 +20,7 @@ typedef struct hewn_clusters_job_desc {
     const hewn_unit *to_unit;
     const hewn_axis *to_up;
     hewn_clusters_desc clusters; /* its progress is not looked at */
-    double began; /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
+    double began;                /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
     const hewn_progress *progress;
 } hewn_clusters_job_desc;
 

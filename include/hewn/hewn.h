@@ -22,6 +22,7 @@
 #include "hewn/picture.h"
 #include "hewn/progressive.h"
 #include "hewn/progressive_job.h"
+#include "hewn/refinement.h"
 #include "hewn/render.h"
 #include "hewn/render_job.h"
 #include "hewn/repair.h"

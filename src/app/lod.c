@@ -141,9 +141,9 @@ static bool is_progressive(const hewn_arguments *arguments, const hewn_file_job_
 
 static hewn_result read_clusters(const hewn_arguments *arguments, lod_request *out, hewn_error *error)
 {
-    static const char *const others[] = {"levels", "errors",   "pixels", "lines",
-                                         "lock",   "preserve", "faces",  "error",
-                                         "partial", "no-self-intersections", NULL};
+    static const char *const others[] = {"levels",   "errors", "pixels", "lines",   "lock",
+                                         "preserve", "faces",  "error",  "partial", "no-self-intersections",
+                                         NULL};
     const char *size = hewn_arguments_value(arguments, "cluster-size");
     const hewn_file_job_desc *file = &out->file.desc;
     double numbers[MOST_LEVELS];

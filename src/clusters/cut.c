@@ -87,7 +87,7 @@ static uint32_t *find_neighbours(const clusters_work *work, const clusters_soup 
 typedef struct growth {
     const clusters_soup *soup;
     const uint32_t *neighbours;
-    uint8_t *taken;    /* of triangles: 1 in a cluster, 2 in the fringe */
+    uint8_t *taken; /* of triangles: 1 in a cluster, 2 in the fringe */
     uint32_t *fringe;
     size_t fringe_count;
     uint32_t vertex_count, triangle_count;
@@ -99,8 +99,8 @@ static hewn_result make_room(clusters_work *work, hewn_error *error)
     hewn_clusters *out = work->out;
     if (out->count >= UINT32_MAX / 512 || out->triangle_count >= UINT32_MAX - 1024)
         return hewn_fail(error, HEWN_LIMIT, "too many triangles for clusters");
-    HEWN_TRY(hewn_reserve((void **)&out->clusters, &work->cluster_room, out->count + 1ull, sizeof *out->clusters,
-                          error));
+    HEWN_TRY(
+        hewn_reserve((void **)&out->clusters, &work->cluster_room, out->count + 1ull, sizeof *out->clusters, error));
     HEWN_TRY(hewn_reserve((void **)&out->vertices, &work->vertex_room, out->vertex_count + 256, sizeof *out->vertices,
                           error));
     if (work->triangle_room >= out->triangle_count + 512)
@@ -137,7 +137,8 @@ static void find_middle(const clusters_work *work, const clusters_soup *soup, ui
     for (size_t axis = 0; axis < 3; axis++) {
         out[axis] = 0;
         for (size_t k = 0; k < 3; k++)
-            out[axis] += fold_at(&work->whole, work->whole.wedge_vertices[soup->wedges[3 * (size_t)triangle + k]])[axis] / 3;
+            out[axis] +=
+                fold_at(&work->whole, work->whole.wedge_vertices[soup->wedges[3 * (size_t)triangle + k]])[axis] / 3;
     }
 }
 
@@ -262,8 +263,8 @@ static void grow(clusters_work *work, growth *of, uint32_t seed)
         of->taken[of->fringe[i]] = 0;
 }
 
-/* Where the next cluster begins: beside the last one, at the triangle with the fewest free neighbours, so that no scraps
- * are left behind. */
+/* Where the next cluster begins: beside the last one, at the triangle with the fewest free neighbours, so that no
+ * scraps are left behind. */
 static uint32_t choose_seed(const growth *of)
 {
     uint32_t best = HEWN_NONE, least = 4;

@@ -113,8 +113,8 @@ static uint32_t choose(const graph *of, const uint32_t *members, uint32_t count,
     for (uint32_t m = 0; m < count; m++)
         for (uint32_t i = of->first[members[m]]; i < of->first[members[m] + 1]; i++) {
             const uint32_t other = of->to[i].b;
-            if (groups[other] == HEWN_NONE &&
-                (best == HEWN_NONE || weights[other] > weights[best] || (weights[other] == weights[best] && other < best)))
+            if (groups[other] == HEWN_NONE && (best == HEWN_NONE || weights[other] > weights[best] ||
+                                               (weights[other] == weights[best] && other < best)))
                 best = other;
         }
     for (uint32_t m = 0; m < count; m++)

@@ -143,8 +143,8 @@ static hewn_result coarsen_all(const clusters_work *work, level *of, hewn_error 
 #pragma omp parallel for schedule(dynamic, 1)
     for (uint32_t g = 0; g < of->group_count; g++) {
         hewn_error own = {0};
-        const hewn_result result = hewn_clusters_coarsen(work, of->members + of->first[g], of->first[g + 1] - of->first[g],
-                                                         of->border, &of->coarse[g], &own);
+        const hewn_result result = hewn_clusters_coarsen(
+            work, of->members + of->first[g], of->first[g + 1] - of->first[g], of->border, &of->coarse[g], &own);
         if (result != HEWN_OK)
 #pragma omp critical(hewn_clusters)
             if (g < worst_at) {

@@ -50,10 +50,8 @@ static hewn_result flatten_faces(const hewn_clusters *from, const hewn_channel *
 /* Triangles of the finest level, in the order of the clusters, over their vertices. */
 static hewn_result flatten(const hewn_clusters *from, const hewn_model *model, hewn_model *out, hewn_error *error)
 {
-    *out = (hewn_model){.vertex_count = from->unique_count,
-                        .unit = model->unit,
-                        .up = model->up,
-                        .up_known = model->up_known};
+    *out = (hewn_model){
+        .vertex_count = from->unique_count, .unit = model->unit, .up = model->up, .up_known = model->up_known};
     for (uint32_t i = 0; i < from->count && from->clusters[i].level == 0; i++)
         out->face_count += from->clusters[i].triangle_count;
     out->positions = hewn_alloc(out->vertex_count, 3 * sizeof *out->positions);
@@ -136,8 +134,7 @@ static hewn_result write_file(const hewn_writing *job, const hewn_clusters *from
 
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
-static hewn_result compose(hewn_writing *job, const hewn_clusters *from, char **head, size_t *length,
-                           hewn_error *error)
+static hewn_result compose(hewn_writing *job, const hewn_clusters *from, char **head, size_t *length, hewn_error *error)
 {
     hewn_text plain = {0}, json = {0};
     hewn_gltf_clusters behind = {.cluster_bytes = (uint64_t)CLUSTER_BYTES * from->count,

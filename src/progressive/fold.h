@@ -16,7 +16,7 @@ enum { FOLD_MOST = 64 };
 typedef enum fold_state {
     FOLD_FREE,
     FOLD_BORDER, /* shared with what is not seen here: others may join it, but no two of them get a new edge */
-    FOLD_STAYS, /* not manifold here, or too many triangles: takes no part */
+    FOLD_STAYS,  /* not manifold here, or too many triangles: takes no part */
     FOLD_GONE
 } fold_state;
 

@@ -65,6 +65,11 @@ void hewn_progressive_find_rows(hewn_progressive *to);
 void hewn_progressive_row_get(const hewn_model *model, hewn_domain domain, uint64_t index, unsigned char *row);
 void hewn_progressive_row_put(hewn_model *model, hewn_domain domain, uint64_t index, const unsigned char *row);
 
+/* The model of the triangles that are marked, with these wedges at all triangles' corners, in the order of the stream;
+ * vertices that they do not use are left out. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_progressive_gather(const hewn_progressive *from, const uint32_t *wedges, const uint8_t *marked,
+                                    hewn_model *out, hewn_error *error);
+
 /* How many there are of each after so many splits. */
 static inline uint32_t progressive_triangles_at(const hewn_progressive *from, uint64_t splits)
 {

@@ -93,6 +93,41 @@ static hewn_result unfold_part(const hewn_progressive *from, uint64_t splits, he
     return HEWN_OK;
 }
 
+hewn_result hewn_progressive_gather(const hewn_progressive *from, const uint32_t *wedges, const uint8_t *marked,
+                                    hewn_model *out, hewn_error *error)
+{
+    uint32_t *numbers = hewn_alloc(from->vertex_count, sizeof *numbers);
+    uint64_t vertices = 0, triangles = 0;
+    if (!numbers)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a refined mesh");
+    memset(numbers, 0xff, from->vertex_count * sizeof *numbers);
+    for (size_t t = 0; t < from->triangle_count; t++) {
+        for (size_t k = 0; marked[t] && k < 3; k++)
+            numbers[from->wedge_vertices[wedges[3 * t + k]]] = 0;
+        triangles += marked[t];
+    }
+    for (size_t v = 0; v < from->vertex_count; v++)
+        if (numbers[v] == 0)
+            numbers[v] = (uint32_t)vertices++;
+    hewn_result result = begin_model(from, vertices, triangles, 3 * triangles, out, error);
+    if (result == HEWN_OK)
+        result = add_channels(from, out, error);
+    for (uint32_t v = 0; result == HEWN_OK && v < from->vertex_count; v++)
+        if (numbers[v] != HEWN_NONE)
+            put_vertex(from, v, numbers[v], out);
+    for (size_t t = 0, to = 0; result == HEWN_OK && t < from->triangle_count; t++) {
+        if (!marked[t])
+            continue;
+        for (size_t k = 0; k < 3; k++) {
+            out->corners[3 * to + k] = numbers[from->wedge_vertices[wedges[3 * t + k]]];
+            put_corner(from, wedges[3 * t + k], 3 * to + k, out);
+        }
+        put_face(from, from->triangle_rows, t, to++, out);
+    }
+    hewn_free(numbers);
+    return result;
+}
+
 /* --- in the input's own order ------------------------------------------------------------------------------------- */
 
 static void put_polygons(const hewn_progressive *from, hewn_model *out)

@@ -19,8 +19,8 @@ static hewn_check *check_of(const hewn_model *model)
 {
     hewn_check *check;
     const hewn_polygons polygons = hewn_model_polygons(model);
-    assert_int_equal(
-        hewn_check_polygons(&polygons, &(hewn_check_desc){.skip_self_intersections = true}, &check, NULL), HEWN_OK);
+    assert_int_equal(hewn_check_polygons(&polygons, &(hewn_check_desc){.skip_self_intersections = true}, &check, NULL),
+                     HEWN_OK);
     return check;
 }
 
@@ -84,8 +84,8 @@ static void test_clusters_are_as_they_should_be(void **state)
     for (int shape = 0; shape < 3; shape++) {
         hewn_model model = make_shape(shape, &random);
         const uint32_t sizes[][2] = {{64, 124}, {32, 20}, {255, 512}};
-        hewn_clusters made = make_clusters(
-            &model, &(hewn_clusters_desc){.vertices = sizes[shape][0], .triangles = sizes[shape][1]});
+        hewn_clusters made =
+            make_clusters(&model, &(hewn_clusters_desc){.vertices = sizes[shape][0], .triangles = sizes[shape][1]});
         uint64_t input = 0, roots = 0, parents = 0;
         for (uint32_t i = 0; i < made.count; i++) {
             const hewn_cluster *cluster = &made.clusters[i];
@@ -211,7 +211,8 @@ static void test_odd_input(void **state)
     hewn_clusters made = make_clusters(&none, NULL);
     assert_int_equal(made.count, 0);
     hewn_clusters_destroy(&made);
-    const hewn_clusters_desc bad[] = {{.vertices = 2}, {.vertices = 256}, {.triangles = 513}, {.group = 1}, {.group = 33}};
+    const hewn_clusters_desc bad[] = {
+        {.vertices = 2}, {.vertices = 256}, {.triangles = 513}, {.group = 1}, {.group = 33}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_int_equal(hewn_clusters_make(&none, &bad[i], &made, NULL), HEWN_INVALID_ARGUMENT);
 }

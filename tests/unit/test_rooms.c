@@ -74,6 +74,7 @@ static const header headers[] = {
     {"distance", "mesh"},
     {"lod", "lod"},
     {"progressive", "progressive"},
+    {"refinement", "progressive"},
     {"clusters", "clusters"},
     {"lod_job", "pipeline"},
     {"clusters_job", "pipeline"},

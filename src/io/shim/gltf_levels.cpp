@@ -177,7 +177,8 @@ std::string add_clusters(const hewn_text &document, const hewn_gltf_clusters &wh
     return all.dump();
 }
 
-template <typename Make> hewn_result guard(Make make, hewn_text *out, hewn_error *error)
+template <typename Make>
+hewn_result guard(Make make, hewn_text *out, hewn_error *error)
 {
     try {
         std::string text = make();
