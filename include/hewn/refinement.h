@@ -22,9 +22,9 @@ typedef struct hewn_refinement hewn_refinement;
  * the vertex that went and at the middles of the edges that came.
  *
  * planes: the inside of the picture is where all are positive, a x + b y + c z + d with (a, b, c) of length 1; 0: no
- * bounds. Tolerances are multiplied by `outside` for what lies wholly outside (1 or more, infinite for the base's; 0:
- * 1), by `back` for what is wholly turned away (1 to `outside`; 0: 1), by `silhouette` for what may be part of an
- * outline (above 0 to 1; 0: 1). */
+ * bounds. Tolerances are multiplied by `outside` for what lies wholly outside (no less than `back`, infinite for the
+ * base's; 0: `back`), by `back` for what is wholly turned away (1 and more; 0: 1), by `silhouette` for what may be part
+ * of an outline (above 0 to 1; 0: 1). */
 typedef struct hewn_refinement_view {
     double eye[3];
     double pixels, tolerance;

@@ -204,9 +204,14 @@ static double or_one(double factor)
     return factor == 0 ? 1 : factor;
 }
 
+static double outside_of(const hewn_refinement_view *view)
+{
+    return view->outside == 0 ? or_one(view->back) : view->outside;
+}
+
 static hewn_result check_view(const hewn_refinement_view *view, hewn_error *error)
 {
-    const double outside = or_one(view->outside), back = or_one(view->back), silhouette = or_one(view->silhouette);
+    const double outside = outside_of(view), back = or_one(view->back), silhouette = or_one(view->silhouette);
     bool right = isfinite(view->eye[0]) && isfinite(view->eye[1]) && isfinite(view->eye[2]) && view->plane_count <= 6;
     right &= view->pixels > 0 && isfinite(view->pixels) && view->tolerance >= 0;
     for (uint32_t p = 0; right && p < view->plane_count; p++)
@@ -230,7 +235,7 @@ static double factor_of(const progressive_region *of, const double to[3], double
         const double *plane = view->planes[p];
         const double above = plane[0] * of->center[0] + plane[1] * of->center[1] + plane[2] * of->center[2] + plane[3];
         if (above < -of->radius)
-            return or_one(view->outside);
+            return outside_of(view);
     }
     if (distance <= of->radius || of->angle < 0)
         return or_one(view->silhouette);
