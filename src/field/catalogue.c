@@ -75,6 +75,8 @@ CALL(shell, F(0), V(1))
 CALL(offset, F(0), V(1))
 CALL(displace, F(0), F(1))
 CALL(morph, F(0), F(1), F(2))
+CALL(color, F(0), V(1), V(2), V(3))
+CALL(label, F(0), (uint32_t)V(1))
 CALL(translate, F(0), V(1), V(2), V(3))
 CALL(mirror, F(0), (int)V(1))
 CALL(symmetric, F(0), (int)V(1))
@@ -158,6 +160,10 @@ static hewn_node call_scale(hewn_field *field, const hewn_argument *v)
 #define CURVES                                                                                                         \
     {                                                                                                                  \
         "curves", HEWN_ARGUMENT_CURVES, 0, 0, false, 0                                                                 \
+    }
+#define PART(name)                                                                                                     \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_PART, 0, 0, false, 0                                                                       \
     }
 #define SEED                                                                                                           \
     {                                                                                                                  \
@@ -283,6 +289,12 @@ const hewn_function hewn_functions[] = {
     {"billow", HEWN_SECTION_NOISE, HEWN_LOOSE, 0, 0, NULL, "the same of 2 |noise| − 1: humps", {OCTAVE_ARGUMENTS},
      call_billow},
 
+    {"mesh_field", HEWN_SECTION_FILES, HEWN_LOOSE, 0, 0, "mesh_field(file [, {cell=, band=, dense=, memory=}])",
+     "the shape in a mesh file, sampled at every `cell` near its surface", {{0}}, NULL},
+    {"heightmap", HEWN_SECTION_FILES, HEWN_BOUND, 1, 0,
+     "heightmap(file, {size= [, height=, dims=, type=, endian=, offset=]})",
+     "the land under the heights in an image: PNG, TIFF, raw samples", {{0}}, NULL},
+
     {"union", HEWN_SECTION_COMBINING, HEWN_EXACT_OUTSIDE, 1, 0, "union(a, ...)",
      "what lies in one of them: the minimum", {FIELD("a"), FIELD("b")}, call_union},
     {"intersection", HEWN_SECTION_COMBINING, HEWN_BOUND, 1, 0, "intersection(a, ...)",
@@ -333,6 +345,12 @@ const hewn_function hewn_functions[] = {
     {"morph", HEWN_SECTION_CHANGING, HEWN_LOOSE, 0, 0, NULL,
      "`a` where `part` (a field or a number) is 0, `b` where it is 1, a mix between",
      {FIELD("a"), FIELD("b"), OPERAND("part")}, call_morph},
+
+    {"color", HEWN_SECTION_PAINT, HEWN_EXACT, 1, 0, "color(a, red, green, blue)",
+     "the shape in a colour, as on a screen, each from 0 to 1; `color(a, \"#rrggbb\")` too",
+     {FIELD("a"), PART("red"), PART("green"), PART("blue")}, call_color},
+    {"label", HEWN_SECTION_PAINT, HEWN_EXACT, 1, 0, NULL,
+     "the shape with a number, which the mesh's faces carry", {FIELD("a"), WHOLE("label", 0, HEWN_LABEL_MOST)}, call_label},
 
     {"translate", HEWN_SECTION_MOVING, HEWN_EXACT, 1, 0, "translate(a, x, y, z)", "moved by that much",
      {FIELD("a"), NUMBER("x"), NUMBER("y"), NUMBER("z")}, call_translate},
@@ -398,9 +416,9 @@ int hewn_function_arguments(const hewn_function *function, int *needed)
 
 const char *hewn_section_name(hewn_section section)
 {
-    static const char *const names[HEWN_SECTIONS] = {"solids",       "flat shapes", "into space", "periodic surfaces",
-                                                     "noise",        "combining",   "changing",   "moving",
-                                                     "bending space"};
+    static const char *const names[HEWN_SECTIONS] = {"solids", "flat shapes", "into space",   "periodic surfaces",
+                                                     "noise",  "files",       "combining",    "changing",
+                                                     "paint",  "moving",      "bending space"};
     return names[section];
 }
 

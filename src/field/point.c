@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "field/internal.h"
+#include "field/sampling.h"
 
 static double least(double a, double b)
 {
@@ -129,6 +130,7 @@ static double shape(const hewn_node_data *node, const double *in)
     case HEWN_OP_NOISE_CELLULAR: return hewn_noise_point(node, in);
     case HEWN_OP_EDGE: return edge(p, in);
     case HEWN_OP_OUTLINE: return outline(in);
+    case HEWN_OP_SAMPLED: return hewn_sampling_value(node->samples, in, NULL);
     default: return (double)NAN;
     }
 }
@@ -166,6 +168,7 @@ double hewn_op_point(const hewn_node_data *node, const double in[3])
     double a = in[0], b = in[1];
     switch (node->op) {
     case HEWN_OP_CONSTANT: return p[0];
+    case HEWN_OP_PAINT: return a;
     case HEWN_OP_NEG: return -a;
     case HEWN_OP_ABS: return fabs(a);
     case HEWN_OP_SQRT: return sqrt(a);
