@@ -2,7 +2,9 @@
 #ifndef HEWN_IO_H
 #define HEWN_IO_H
 
+#include "hewn/clusters.h"
 #include "hewn/model.h"
+#include "hewn/progressive.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -16,7 +18,8 @@ typedef enum hewn_mesh_format {
     HEWN_MESH_PLY,  /* written binary little-endian; polygons, float where that holds every position, else double */
     HEWN_MESH_STL,  /* written binary; triangles, float, no shared vertices */
     HEWN_MESH_OFF,  /* text; polygons, double */
-    HEWN_MESH_3MF   /* triangles, with a unit, always +Z up; written only */
+    HEWN_MESH_3MF,  /* triangles, with a unit, always +Z up; written only */
+    HEWN_MESH_HPM   /* a progressive mesh, read with all its splits; hewn_progressive_write() writes it */
 } hewn_mesh_format;
 
 /* The format that a file's extension names (any case; one ".gz" after it is passed over), or HEWN_MESH_UNKNOWN. */
@@ -93,6 +96,27 @@ typedef struct hewn_object {
  * `progress` may be NULL, its stage is "write". */
 HEWN_API hewn_result hewn_objects_write_glb(const hewn_object *objects, size_t count, const int64_t *numbers,
                                             const char *path, const hewn_progress *progress, hewn_error *error);
+
+/* A progressive mesh from a file (.hpm, docs/hpm.md), compressed with gzip or not, and to one; "-" is standard input
+ * and output. `partial` takes a file that ends early with what is whole of it, but for a compressed one. The errors of
+ * hewn_progressive_decode() and HEWN_IO. */
+HEWN_API hewn_result hewn_progressive_read(const char *path, bool partial, const hewn_progress *progress,
+                                           hewn_progressive **out, hewn_error *error);
+HEWN_API hewn_result hewn_progressive_write(const hewn_progressive *progressive, const char *path, hewn_error *error);
+
+/* Writes clusters of a model as a GLB file: the mesh is that of the finest level, so that any reader shows it, and what
+ * is needed for the others stands in its extras (docs/lod.md). Positions of the model are rounded to floats, attributes
+ * kept as hewn_model_write() keeps them. The model is in metres, +Y up. Errors as of hewn_model_write(). `desc` may be
+ * NULL; its format is not looked at. */
+HEWN_API hewn_result hewn_clusters_write_glb(const hewn_clusters *clusters, const hewn_model *model, const char *path,
+                                             const hewn_write_desc *desc, hewn_error *error);
+
+/* Writes levels of detail, from fine to coarse, as one GLB file: the first is the scene's, and names the others as its
+ * levels (extension MSFT_lod). `coverages`, as many as levels, are the least share of the picture's height that each is
+ * meant for, falling (MSFT_screencoverage in the first node's extras). Each level keeps what hewn_model_write() keeps.
+ * `desc` may be NULL; its format is not looked at. Errors as of hewn_model_write(), HEWN_INVALID_ARGUMENT for none. */
+HEWN_API hewn_result hewn_levels_write_glb(const hewn_model *const *levels, const double *coverages, uint32_t count,
+                                           const char *path, const hewn_write_desc *desc, hewn_error *error);
 
 #ifdef __cplusplus
 }

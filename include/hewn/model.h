@@ -40,6 +40,9 @@ typedef struct hewn_model {
 
 HEWN_API void hewn_model_destroy(hewn_model *model);
 
+/* A model of its own with the same bits. HEWN_OUT_OF_MEMORY. */
+HEWN_API hewn_result hewn_model_copy(const hewn_model *model, hewn_model *out, hewn_error *error);
+
 /* The entries of `corners`. */
 HEWN_API uint64_t hewn_model_corner_count(const hewn_model *model);
 

@@ -11,13 +11,7 @@ static const hewn_option options[] = {
      "Go no further than LENGTH away, in the input's unit: the distance of every point of each surface from the other, "
      "which is proven before the mesh is written."},
     {0, "error-rel", "SHARE", "The same in diagonals of the input's box."},
-    {0, "lock", "LIST",
-     "What stays, with commas between: boundary, features:ANGLE (edges that bend by more), labels (where faces differ "
-     "in label, material, group or object)."},
-    {0, "preserve", "LIST",
-     "What counts besides the shape, with commas between: uv, normal, color, label, or none. Default: uv,color,label. "
-     "Normals that do not count are made anew, texture coordinates that do not count are dropped."},
-    {0, "no-self-intersections", NULL, "Make no faces that run through others."},
+    HEWN_OPTIONS_SIMPLIFY_MANNER,
     HEWN_OPTIONS_FRAME,
     HEWN_OPTION_FROM,
     HEWN_OPTION_TO,

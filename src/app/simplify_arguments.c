@@ -127,15 +127,21 @@ static hewn_result read_list(const char *at, read_word *read, hewn_simplify_desc
     return HEWN_OK;
 }
 
-hewn_result hewn_simplify_arguments_read(const hewn_arguments *arguments, hewn_simplify_desc *out, hewn_error *error)
+hewn_result hewn_simplify_manner_read(const hewn_arguments *arguments, hewn_simplify_desc *out, hewn_error *error)
 {
-    *out = (hewn_simplify_desc){0};
-    HEWN_TRY(read_targets(arguments, out, error));
     HEWN_TRY(read_list(hewn_arguments_value(arguments, "lock"), read_lock, out, error));
     HEWN_TRY(read_list(hewn_arguments_value(arguments, "preserve"), read_preserve, out, error));
     if ((out->preserve & HEWN_PRESERVE_NONE) && out->preserve != HEWN_PRESERVE_NONE)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--preserve none excludes all others");
     out->no_self_intersections = hewn_arguments_has(arguments, "no-self-intersections");
+    return HEWN_OK;
+}
+
+hewn_result hewn_simplify_arguments_read(const hewn_arguments *arguments, hewn_simplify_desc *out, hewn_error *error)
+{
+    *out = (hewn_simplify_desc){0};
+    HEWN_TRY(read_targets(arguments, out, error));
+    HEWN_TRY(hewn_simplify_manner_read(arguments, out, error));
     out->measure = hewn_arguments_has(arguments, "report");
     return HEWN_OK;
 }

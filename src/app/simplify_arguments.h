@@ -12,6 +12,22 @@
             "has more."                                                                                                \
     }
 
+/* How a mesh is simplified, whatever the target. */
+#define HEWN_OPTIONS_SIMPLIFY_MANNER                                                                                   \
+    {0, "lock", "LIST",                                                                                                \
+     "What stays, with commas between: boundary, features:ANGLE (edges that bend by more), labels (where faces "       \
+     "differ in label, material, group or object)."},                                                                  \
+        {0, "preserve", "LIST",                                                                                        \
+         "What counts besides the shape, with commas between: uv, normal, color, label, or none. Default: "            \
+         "uv,color,label. Normals that do not count are made anew, texture coordinates that do not count are "         \
+         "dropped."},                                                                                                  \
+    {                                                                                                                  \
+        0, "no-self-intersections", NULL, "Make no faces that run through others."                                     \
+    }
+
+/* Those; what else is in `out` stays. HEWN_INVALID_ARGUMENT. */
+hewn_result hewn_simplify_manner_read(const hewn_arguments *arguments, hewn_simplify_desc *out, hewn_error *error);
+
 /* The options of `hewn simplify`. HEWN_INVALID_ARGUMENT. */
 hewn_result hewn_simplify_arguments_read(const hewn_arguments *arguments, hewn_simplify_desc *out, hewn_error *error);
 

@@ -7,7 +7,7 @@ static const struct {
     const char *extension;
     hewn_mesh_format format;
 } known[] = {{"glb", HEWN_MESH_GLB}, {"gltf", HEWN_MESH_GLTF}, {"obj", HEWN_MESH_OBJ}, {"ply", HEWN_MESH_PLY},
-             {"stl", HEWN_MESH_STL}, {"off", HEWN_MESH_OFF},   {"3mf", HEWN_MESH_3MF}};
+             {"stl", HEWN_MESH_STL}, {"off", HEWN_MESH_OFF},   {"3mf", HEWN_MESH_3MF}, {"hpm", HEWN_MESH_HPM}};
 
 /* The name of `path` without its folder and without a final ".gz". */
 static size_t base_of(const char *path, const char **base)

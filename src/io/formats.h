@@ -23,6 +23,7 @@ hewn_result hewn_gltf_read(const hewn_source *source, hewn_model *out, hewn_erro
 hewn_result hewn_obj_read(const hewn_source *source, hewn_model *out, hewn_error *error);
 hewn_result hewn_off_read(const hewn_source *source, hewn_model *out, hewn_error *error);
 hewn_result hewn_ply_read(const hewn_source *source, hewn_model *out, hewn_error *error);
+hewn_result hewn_hpm_read(const hewn_source *source, hewn_model *out, hewn_error *error);
 hewn_result hewn_stl_read(const hewn_source *source, hewn_model *out, hewn_error *error);
 
 /* --- writers ------------------------------------------------------------------------------------------------------ */
@@ -64,6 +65,16 @@ typedef struct hewn_format_writer {
 
 extern const hewn_format_writer hewn_glb_writer, hewn_obj_writer, hewn_ply_writer, hewn_stl_writer, hewn_off_writer,
     hewn_3mf_writer;
+
+/* A model's job, without triangles cut of polygons and without a name. */
+hewn_writing hewn_writing_of(const hewn_model *model, const hewn_write_desc *desc);
+
+/* The name given, or the file's without folder and extension, with control characters blanked: names stand in lines.
+ * The caller's (hewn_free); NULL when out of memory. */
+char *hewn_object_name(const char *given, const char *path);
+
+/* HEWN_BAD_INPUT for a number of a channel that is not finite. */
+hewn_result hewn_writing_check(const hewn_writing *job, hewn_error *error);
 
 /* How much is written between two looks at the progress callback. */
 enum { HEWN_WRITE_BLOCK = 1 << 12 }; /* items */

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "io/bytes.h"
+#include "io/glb_body.h"
 #include "io/glb_plan.h"
 #include "io/stream.h"
 #include "io/target.h"
@@ -186,19 +187,18 @@ static hewn_result find_bounds(const hewn_writing *job, const hewn_glb_plan *pla
     return HEWN_OK;
 }
 
-/* The file's header, the JSON chunk and the binary chunk's header. */
-static hewn_result assemble_head(hewn_writing *job, const hewn_glb_plan *plan, const hewn_text *json, hewn_error *error)
+hewn_result hewn_glb_head(const hewn_text *json, uint64_t binary, char **out, size_t *length, hewn_error *error)
 {
-    uint64_t text = (json->length + 3) & ~(uint64_t)3, binary = (find_sizes(job, plan).whole + 3) & ~(uint64_t)3;
+    uint64_t text = (json->length + 3) & ~(uint64_t)3;
     uint64_t head = 20 + text + (binary > 0 ? 8 : 0);
     if (head + binary > UINT32_MAX)
         return hewn_fail(error, HEWN_LIMIT, "the mesh needs %llu bytes, more than the 4 GiB that a GLB file can hold",
                          (unsigned long long)(head + binary));
-    job->head = hewn_alloc(head, 1);
-    if (!job->head)
+    *out = hewn_alloc(head, 1);
+    if (!*out)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
-    job->head_length = head;
-    char *at = hewn_put_u32(job->head, MAGIC);
+    *length = head;
+    char *at = hewn_put_u32(*out, MAGIC);
     at = hewn_put_u32(at, 2);
     at = hewn_put_u32(at, (uint32_t)(head + binary));
     at = hewn_put_u32(at, (uint32_t)text);
@@ -240,22 +240,31 @@ static hewn_result compose(const hewn_writing *job, const hewn_glb_plan *plan, h
     return hewn_gltf_compose(&desc, json, error);
 }
 
-static hewn_result prepare(hewn_writing *job, hewn_error *error)
+hewn_result hewn_glb_compose(hewn_writing *job, hewn_text *json, uint64_t *binary, hewn_error *error)
 {
     writer *own = job->own = hewn_alloc_zero(1, sizeof *own);
     if (!own)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
     HEWN_TRY(hewn_glb_plan_make(job, &own->plan, error));
-    hewn_text texts[2] = {{0}, {0}}, json = {0};
+    hewn_text texts[2] = {{0}, {0}};
     hewn_gltf_stream *streams = hewn_alloc(own->plan.layer_count, sizeof *streams);
-    hewn_result result = streams ? compose(job, &own->plan, texts, streams, &json, error)
+    hewn_result result = streams ? compose(job, &own->plan, texts, streams, json, error)
                                  : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
-    if (result == HEWN_OK)
-        result = assemble_head(job, &own->plan, &json, error);
+    *binary = (find_sizes(job, &own->plan).whole + 3) & ~(uint64_t)3;
     hewn_text_clear(&texts[0]);
     hewn_text_clear(&texts[1]);
-    hewn_text_clear(&json);
     hewn_free(streams);
+    return result;
+}
+
+static hewn_result prepare(hewn_writing *job, hewn_error *error)
+{
+    hewn_text json = {0};
+    uint64_t binary;
+    hewn_result result = hewn_glb_compose(job, &json, &binary, error);
+    if (result == HEWN_OK)
+        result = hewn_glb_head(&json, binary, &job->head, &job->head_length, error);
+    hewn_text_clear(&json);
     return result;
 }
 
@@ -275,13 +284,12 @@ static hewn_result pad(hewn_output *output, uint64_t length, hewn_error *error)
     return hewn_output_write(output, "\0\0\0", (size_t)(-length & 3), error);
 }
 
-static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_error *error)
+hewn_result hewn_glb_write_body(const hewn_writing *job, hewn_output *output, hewn_error *error)
 {
     writer *own = job->own;
     const hewn_glb_plan *plan = &own->plan;
     uint64_t vertices = hewn_glb_vertex_count(job, plan), corners = 3 * job->triangle_count;
     sizes size = find_sizes(job, plan);
-    HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
     if (job->triangle_count == 0)
         return HEWN_OK;
     double share = 0.7 / (double)(plan->layer_count + 1);
@@ -302,6 +310,12 @@ static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_erro
         HEWN_TRY(hewn_stream_write(job, &stream, output, error));
     }
     return pad(output, size.whole, error);
+}
+
+static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_error *error)
+{
+    HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
+    return hewn_glb_write_body(job, output, error);
 }
 
 const hewn_format_writer hewn_glb_writer = {

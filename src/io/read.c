@@ -17,6 +17,7 @@ static hewn_format_read reader_of(hewn_mesh_format format)
     case HEWN_MESH_PLY: return hewn_ply_read;
     case HEWN_MESH_STL: return hewn_stl_read;
     case HEWN_MESH_OFF: return hewn_off_read;
+    case HEWN_MESH_HPM: return hewn_hpm_read;
     case HEWN_MESH_3MF:
     case HEWN_MESH_UNKNOWN: break;
     }
@@ -46,9 +47,9 @@ hewn_result hewn_model_read(const char *path, const hewn_read_desc *desc, hewn_m
     hewn_mesh_format format = wanted->format != HEWN_MESH_UNKNOWN ? wanted->format : hewn_mesh_format_of(path);
     hewn_format_read read = reader_of(format);
     if (!read)
-        return hewn_fail_at(
-            error, HEWN_INVALID_ARGUMENT, path, 0,
-            "no format that can be read; known extensions are .glb, .gltf, .obj, .ply, .stl and .off, also with .gz");
+        return hewn_fail_at(error, HEWN_INVALID_ARGUMENT, path, 0,
+                            "no format that can be read; known extensions are .glb, .gltf, .obj, .ply, .stl, .off and "
+                            ".hpm, also with .gz");
     char *bytes;
     size_t length;
     HEWN_TRY(hewn_progress_report(wanted->progress, "load", 0, error));

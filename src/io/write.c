@@ -17,6 +17,7 @@ static const hewn_format_writer *writer_of(hewn_mesh_format format)
     case HEWN_MESH_OFF: return &hewn_off_writer;
     case HEWN_MESH_3MF: return &hewn_3mf_writer;
     case HEWN_MESH_GLTF:
+    case HEWN_MESH_HPM:
     case HEWN_MESH_UNKNOWN: break;
     }
     return NULL;
@@ -48,8 +49,7 @@ double hewn_channel_number(const hewn_channel *channel, uint64_t index, uint32_t
     return 0;
 }
 
-/* The name given, or the file's without folder and extension, with control characters blanked: names stand in lines. */
-static char *object_name(const char *given, const char *path)
+char *hewn_object_name(const char *given, const char *path)
 {
     const char *slash = strrchr(path, '/');
     const char *from = given && *given ? given : strcmp(path, "-") == 0 ? "mesh" : slash ? slash + 1 : path;
@@ -119,7 +119,7 @@ static hewn_result check_channel(const hewn_channel *channel, uint64_t count, co
     return HEWN_OK;
 }
 
-static hewn_result check_channels(const hewn_writing *job, hewn_error *error)
+hewn_result hewn_writing_check(const hewn_writing *job, hewn_error *error)
 {
     const uint64_t counts[] = {[HEWN_DOMAIN_VERT] = job->vertex_count,
                                [HEWN_DOMAIN_CORNER] = job->corner_count,
@@ -160,10 +160,10 @@ static hewn_result find_writer(const char *path, hewn_mesh_format format, const 
 static hewn_result prepare_and_write(hewn_writing *job, const hewn_format_writer *writer, const char *path,
                                      const hewn_write_desc *desc, hewn_error *error)
 {
-    char *name = object_name(desc->name, path);
+    char *name = hewn_object_name(desc->name, path);
     job->name = name;
     hewn_result result =
-        name ? check_channels(job, error) : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
+        name ? hewn_writing_check(job, error) : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
     if (result == HEWN_OK && writer->prepare)
         result = writer->prepare(job, error);
     if (result == HEWN_OK)
@@ -243,6 +243,26 @@ static bool is_all_float(const hewn_model *model)
     return true;
 }
 
+hewn_writing hewn_writing_of(const hewn_model *model, const hewn_write_desc *wanted)
+{
+    return (hewn_writing){.vertex_count = model->vertex_count,
+                          .face_count = model->face_count,
+                          .corner_count = hewn_model_corner_count(model),
+                          .doubles = model->positions,
+                          .all_float = is_all_float(model),
+                          .first = model->first,
+                          .each = 3,
+                          .corners = model->corners,
+                          .triangle_count = model->face_count,
+                          .channels = model->channels,
+                          .channel_count = model->channel_count,
+                          .unit = model->unit ? model->unit : wanted->unit,
+                          .up = model->up_known ? model->up : wanted->up,
+                          .up_known = model->up_known || wanted->unit,
+                          .space = wanted->space,
+                          .progress = wanted->progress};
+}
+
 hewn_result hewn_model_write(const hewn_model *model, const char *path, const hewn_write_desc *desc, hewn_error *error)
 {
     static const hewn_write_desc defaults;
@@ -250,22 +270,7 @@ hewn_result hewn_model_write(const hewn_model *model, const char *path, const he
     const hewn_format_writer *writer;
     HEWN_TRY(find_writer(path, wanted->format, &writer, error));
     HEWN_TRY(hewn_model_check(model, error));
-    hewn_writing job = {.vertex_count = model->vertex_count,
-                        .face_count = model->face_count,
-                        .corner_count = hewn_model_corner_count(model),
-                        .doubles = model->positions,
-                        .all_float = is_all_float(model),
-                        .first = model->first,
-                        .each = 3,
-                        .corners = model->corners,
-                        .triangle_count = model->face_count,
-                        .channels = model->channels,
-                        .channel_count = model->channel_count,
-                        .unit = model->unit ? model->unit : wanted->unit,
-                        .up = model->up_known ? model->up : wanted->up,
-                        .up_known = model->up_known || wanted->unit,
-                        .space = wanted->space,
-                        .progress = wanted->progress};
+    hewn_writing job = hewn_writing_of(model, wanted);
     uint32_t *cut = NULL;
     if (writer->triangles && model->first) {
         hewn_polygons polygons = hewn_model_polygons(model);

@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "pipeline/frame.h"
 #include "pipeline/losses.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
@@ -18,12 +19,9 @@ typedef struct file_job {
     const hewn_file_job_desc *desc;
     hewn_file_report *report;
     double began, stage; /* when the job and the stage began */
-    const hewn_unit *to_unit;
-    const hewn_axis *to_up;
+    hewn_frame frame;
     hewn_model model;
 } file_job;
-
-static const hewn_axis plus_y = HEWN_AXIS_PLUS_Y, plus_z = HEWN_AXIS_PLUS_Z;
 
 static void begin_stage(file_job *job)
 {
@@ -43,31 +41,6 @@ static void end_stage(file_job *job, const char *name)
 
 /* --- before any work --------------------------------------------------------------------------------------------- */
 
-/* GLB is in metres with +Y up, 3MF has +Z up and a unit from a list that kilometres are not in. */
-static hewn_result choose_frame(file_job *job, hewn_error *error)
-{
-    const hewn_file_job_desc *desc = job->desc;
-    hewn_mesh_format to = job->report->to;
-    const hewn_unit *metre = hewn_unit_find("m");
-    job->to_unit = desc->to_unit;
-    job->to_up = desc->to_up;
-    if (to == HEWN_MESH_GLB && job->to_unit && job->to_unit != metre)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB is always in metres, not in %s", job->to_unit->name);
-    if (to == HEWN_MESH_GLB && job->to_up && *job->to_up != plus_y)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB always has +Y up, not %s", hewn_axis_name(*job->to_up));
-    if (to == HEWN_MESH_3MF && job->to_up && *job->to_up != plus_z)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF always has +Z up, not %s", hewn_axis_name(*job->to_up));
-    if (to == HEWN_MESH_3MF && job->to_unit && strcmp(job->to_unit->name, "km") == 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF cannot be in km");
-    if (to == HEWN_MESH_GLB)
-        job->to_unit = metre;
-    if (to == HEWN_MESH_GLB)
-        job->to_up = &plus_y;
-    if (to == HEWN_MESH_3MF)
-        job->to_up = &plus_z;
-    return HEWN_OK;
-}
-
 static hewn_result check(file_job *job, hewn_error *error)
 {
     const hewn_file_job_desc *desc = job->desc;
@@ -75,7 +48,7 @@ static hewn_result check(file_job *job, hewn_error *error)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a job needs an input and an output");
     HEWN_TRY(hewn_input_format(desc->input, desc->from, &job->report->from, error));
     HEWN_TRY(hewn_output_format(desc->output, desc->to, &job->report->to, error));
-    HEWN_TRY(choose_frame(job, error));
+    HEWN_TRY(hewn_frame_choose(job->report->to, (hewn_frame){desc->to_unit, desc->to_up}, &job->frame, error));
     if (desc->report && strcmp(desc->report, desc->output) == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
                          strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
@@ -177,21 +150,11 @@ static hewn_result smooth(file_job *job, hewn_error *error)
     return HEWN_OK;
 }
 
-/* A 3MF file without a unit is in millimetres, and has none for kilometres. */
-static const hewn_unit *unit_for(const file_job *job)
-{
-    if (job->to_unit || job->report->to != HEWN_MESH_3MF)
-        return job->to_unit;
-    const hewn_unit *unit = job->model.unit;
-    if (!unit)
-        return hewn_unit_find("mm");
-    return strcmp(unit->name, "km") == 0 ? hewn_unit_find("m") : NULL;
-}
-
 static hewn_result convert(file_job *job, hewn_error *error)
 {
     hewn_file_report *report = job->report;
-    HEWN_TRY(hewn_model_convert(&job->model, unit_for(job), job->to_up, &report->conversion, error));
+    const hewn_unit *unit = hewn_frame_unit(report->to, job->frame, &job->model);
+    HEWN_TRY(hewn_model_convert(&job->model, unit, job->frame.up, &report->conversion, error));
     report->up_known = job->model.up_known;
     report->vertices = job->model.vertex_count;
     report->faces = job->model.face_count;

@@ -41,6 +41,8 @@ hewn_result hewn_output_format(const char *path, hewn_mesh_format format, hewn_m
                          path);
     if (*out == HEWN_MESH_GLTF)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "glTF as text (.gltf) can be read only; .glb can be written");
+    if (*out == HEWN_MESH_HPM)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "progressive meshes (.hpm) are written by `hewn lod` only");
     if (is_dash(path) && (*out == HEWN_MESH_GLB || *out == HEWN_MESH_3MF))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
                          "%s cannot be written to standard output; obj, ply, stl and off can",
@@ -58,7 +60,7 @@ hewn_result hewn_input_format(const char *path, hewn_mesh_format format, hewn_me
                          "standard input has no extension: name its format with --from glb, obj, ply, stl or off");
     if (*out == HEWN_MESH_UNKNOWN)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "the name '%s' ends in no mesh format that Hewn reads: .glb, .gltf, .obj, .ply, .stl, .off, "
+                         "the name '%s' ends in no mesh format that Hewn reads: .glb, .gltf, .obj, .ply, .stl, .off, .hpm, "
                          "also with .gz; --from names one",
                          path);
     if (*out == HEWN_MESH_3MF)

@@ -26,6 +26,9 @@ static const room rooms[] = {
     {"smooth", "base geom mesh"},
     {"subdivide", "base geom mesh"},
     {"simplify", "base geom mesh"},
+    {"lod", "base geom mesh simplify"},
+    {"progressive", "base geom mesh"},
+    {"clusters", "base geom mesh progressive"},
     {"labels", "base geom volume mesh smooth simplify"},
     {"field", "base geom"},
     {"lanes", "base field"},
@@ -36,9 +39,9 @@ static const room rooms[] = {
     {"render", "base geom field lanes gpu eval"},
     {"font", "base field"},
     {"scene", "base geom field font"},
-    {"io", "base geom volume mesh field"},
-    {"pipeline",
-     "base geom volume mesh smooth labels subdivide simplify field lanes voxelize gpu eval iso render font scene io"},
+    {"io", "base geom volume mesh progressive clusters field"},
+    {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod progressive clusters field lanes voxelize "
+                 "gpu eval iso render font scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -72,6 +75,13 @@ static const header headers[] = {
     {"volume_io", "io"},
     {"simplify", "simplify"},
     {"distance", "mesh"},
+    {"lod", "lod"},
+    {"progressive", "progressive"},
+    {"refinement", "progressive"},
+    {"clusters", "clusters"},
+    {"lod_job", "pipeline"},
+    {"progressive_job", "pipeline"},
+    {"clusters_job", "pipeline"},
     {"volume_extract", "iso"},
     {"volume_job", "pipeline"},
     {"labels", "labels"},

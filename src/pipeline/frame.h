@@ -1,0 +1,20 @@
+/* Which unit and axes a format's files are in. */
+#ifndef HEWN_SRC_PIPELINE_FRAME_H
+#define HEWN_SRC_PIPELINE_FRAME_H
+
+#include "hewn/io.h"
+
+/* A unit and an up axis; NULL: what the model is in. */
+typedef struct hewn_frame {
+    const hewn_unit *unit;
+    const hewn_axis *up;
+} hewn_frame;
+
+/* The frame to write in, given the one that was asked for: GLB is in metres with +Y up, 3MF has +Z up and a unit from a
+ * list that kilometres are not in. HEWN_INVALID_ARGUMENT where the format cannot have what was asked for. */
+hewn_result hewn_frame_choose(hewn_mesh_format to, hewn_frame wanted, hewn_frame *out, hewn_error *error);
+
+/* The unit of that frame for a model: a 3MF file without a unit is in millimetres, and has none for kilometres. */
+const hewn_unit *hewn_frame_unit(hewn_mesh_format to, hewn_frame frame, const hewn_model *model);
+
+#endif
