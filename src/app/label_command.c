@@ -8,6 +8,7 @@
 
 #include "app/file_arguments.h"
 #include "app/number.h"
+#include "app/simplify_arguments.h"
 #include "app/smooth_arguments.h"
 #include "base/alloc.h"
 #include "base/error.h"
@@ -20,6 +21,7 @@ typedef struct request {
     hewn_label_job_desc desc;
     hewn_file_arguments file;
     hewn_file_smooth smooth;
+    hewn_simplify_desc simplify;
     int64_t *labels;
     size_t label_count, room;
 } request;
@@ -162,6 +164,10 @@ static hewn_result read_request(const hewn_arguments *arguments, request *out, h
         HEWN_TRY(hewn_smooth_method_parse(method, "--smooth", &out->smooth.desc.method, error));
         desc->smooth = &out->smooth;
     }
+    bool simplify;
+    HEWN_TRY(hewn_simplify_target_read(arguments, &out->simplify, &simplify, error));
+    out->simplify.measure = desc->report != NULL;
+    desc->simplify = simplify ? &out->simplify : NULL;
     return read_volume(arguments, out, error);
 }
 
@@ -205,6 +211,8 @@ static void print(const hewn_label_job_desc *desc, const hewn_label_report *repo
     if (report->smoothed)
         fprintf(stderr, "  %s, vertices moved by %.4g in the mean, %.4g at most\n",
                 hewn_smooth_method_name(report->smooth_method), report->smooth.mean_move, report->smooth.largest_move);
+    if (report->simplified)
+        hewn_simplify_print(&report->simplify);
     print_notes(report);
 }
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "hewn/labels.h"
 #include "labels/cut.h"
+#include "labels/faces.h"
 #include "labels/relax.h"
 
 static hewn_result fail_memory(hewn_error *error)
@@ -59,19 +60,25 @@ static hewn_result bring_to_world(const hewn_volume *volume, hewn_label_mesh *me
     return finite ? HEWN_OK : hewn_fail(error, HEWN_LIMIT, "the volume's place in the world is too far for doubles");
 }
 
-/* Each label's triangles. */
-static hewn_result list_faces(hewn_label_mesh *mesh, hewn_error *error)
+hewn_result hewn_label_mesh_list_faces(hewn_label_mesh *mesh, hewn_error *error)
 {
-    mesh->first = hewn_alloc_zero((size_t)mesh->label_count + 3, sizeof *mesh->first);
-    mesh->faces = hewn_alloc(mesh->triangle_count, 2 * sizeof *mesh->faces);
-    if (!mesh->first || !mesh->faces)
+    uint64_t *first = hewn_alloc_zero((size_t)mesh->label_count + 3, sizeof *first);
+    uint32_t *faces = hewn_alloc(mesh->triangle_count, 2 * sizeof *faces);
+    if (!first || !faces) {
+        hewn_free(first);
+        hewn_free(faces);
         return fail_memory(error);
+    }
     for (uint64_t i = 0; i < 2 * mesh->triangle_count; i++)
-        mesh->first[mesh->sides[i] + 2]++;
+        first[mesh->sides[i] + 2]++;
     for (uint32_t n = 0; n <= mesh->label_count; n++)
-        mesh->first[n + 2] += mesh->first[n + 1];
+        first[n + 2] += first[n + 1];
     for (uint64_t i = 0; i < 2 * mesh->triangle_count; i++)
-        mesh->faces[mesh->first[mesh->sides[i] + 1]++] = (uint32_t)i;
+        faces[first[mesh->sides[i] + 1]++] = (uint32_t)i;
+    hewn_free(mesh->first);
+    hewn_free(mesh->faces);
+    mesh->first = first;
+    mesh->faces = faces;
     return HEWN_OK;
 }
 
@@ -88,7 +95,7 @@ static hewn_result make(const hewn_volume *volume, const hewn_label_desc *desc, 
     ids->labels = NULL;
     ids->voxel_count = NULL;
     HEWN_TRY(bring_to_world(volume, out, error));
-    return list_faces(out, error);
+    return hewn_label_mesh_list_faces(out, error);
 }
 
 hewn_result hewn_labels_mesh(const hewn_volume *volume, const hewn_label_desc *desc, hewn_label_mesh *out,

@@ -160,6 +160,22 @@ static hewn_result smooth(label_job *job, hewn_error *error)
     return HEWN_OK;
 }
 
+static hewn_result simplify(label_job *job, hewn_error *error)
+{
+    hewn_label_report *report = job->report;
+    if (!job->desc->simplify)
+        return HEWN_OK;
+    hewn_simplify_desc desc = *job->desc->simplify;
+    desc.progress = job->desc->progress;
+    begin_stage(job);
+    HEWN_TRY(hewn_label_mesh_simplify(&job->mesh, &desc, &report->simplify, error));
+    report->simplified = true;
+    report->vertices = job->mesh.vertex_count;
+    report->faces = job->mesh.triangle_count;
+    end_stage(job, "simplify");
+    return HEWN_OK;
+}
+
 /* A 3MF file without a unit is in millimetres, and has none for kilometres. */
 static const hewn_unit *unit_for(const label_job *job)
 {
@@ -400,6 +416,7 @@ static hewn_result run(label_job *job, hewn_error *error)
     HEWN_TRY(name_labels(job, error));
     HEWN_TRY(find_missing(job, error));
     HEWN_TRY(smooth(job, error));
+    HEWN_TRY(simplify(job, error));
     HEWN_TRY(convert(job, error));
     HEWN_TRY(prove_all(job, error));
     return write_meshes(job, error);

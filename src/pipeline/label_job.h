@@ -17,6 +17,8 @@ typedef struct hewn_label_job_desc {
     const char *names;              /* a table file; NULL: none */
     uint32_t relaxations;           /* as in hewn_label_desc */
     const hewn_file_smooth *smooth; /* after that, all shells together; its mask is not looked at. NULL: none */
+    const hewn_simplify_desc *simplify; /* after that, all shells together (hewn_label_mesh_simplify()), lengths in the
+                                           volume's unit; NULL: not */
     const char *output;  /* a file for all labels; or, a file each: a folder (ending in /, or one that is there) or a
                             name  with {label} or {name} in it */
     hewn_mesh_format to; /* HEWN_MESH_UNKNOWN: from the output's extension; in a folder STL */
@@ -52,14 +54,15 @@ typedef struct hewn_label_report {
     uint32_t unnamed_count;   /* labels that the table has not; 0 where there is no table */
     uint64_t vertices, faces; /* of the mesh that the shells share */
     hewn_smooth_report smooth;
+    hewn_simplify_report simplify; /* where it was simplified */
     hewn_conversion conversion;  /* from the volume's world to the output */
-    hewn_report_stage stages[8]; /* load, label, smooth, certify, write */
+    hewn_report_stage stages[8]; /* load, label, smooth, simplify, certify, write */
     uint64_t peak_host_bytes;
     double seconds;
     uint32_t stage_count;
     uint32_t relaxations;
     hewn_smooth_method smooth_method; /* where it was smoothed */
-    bool smoothed;
+    bool smoothed, simplified;
     bool anatomical;
     bool unit_assumed; /* nobody said the unit, and millimetres were taken */
     bool up_known;

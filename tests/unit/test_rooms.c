@@ -24,7 +24,7 @@ static const room rooms[] = {
     {"volume", "base geom"},
     {"mesh", "base geom"},
     {"smooth", "base geom mesh"},
-    {"labels", "base geom volume mesh smooth"},
+    {"labels", "base geom volume mesh smooth simplify"},
     {"subdivide", "base geom mesh"},
     {"simplify", "base geom mesh"},
     {"field", "base geom"},
