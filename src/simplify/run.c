@@ -85,6 +85,8 @@ static hewn_result step(edge_front *front)
     }
     if (plan.far || !hewn_simplify_allowed(work, &plan))
         return HEWN_OK;
+    if (plan.slim && work->wedges && work->wedges->counted > 0) /* attributes would be stretched along it */
+        return HEWN_OK;
     if (plan.slim && !(work->flags[name] & SIMPLIFY_SLIM)) {
         work->key[name] *= slim_factor;
         work->flags[name] |= SIMPLIFY_SLIM;

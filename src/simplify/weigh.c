@@ -1,7 +1,6 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "simplify/collapse.h"
-#include <stdlib.h>
 
 /* How much more a feature edge counts than a surface of its length squared, and how little the distance to a vertex
  * itself does: just enough that there is always a best place, in planes and along lines too. */
@@ -50,8 +49,8 @@ static hewn_result find_mean_area(const simplify_work *work, double *out, hewn_e
     return HEWN_OK;
 }
 
-/* A triangle counts by the geometric mean of its area and that of all: by areas alone the mean distance would be least,
- * but the tip of what is thin would count for nothing, and the greatest distance be there. */
+/* A triangle counts by the fourth root of its area times the mean of all to the third: by areas alone the tip of what
+ * is thin counts for next to nothing, and the greatest distance comes to be there. */
 static void weigh_vertex(simplify_work *work, double mean_area, uint32_t v)
 {
     simplify_quadric q = {0};
@@ -67,8 +66,7 @@ static void weigh_vertex(simplify_work *work, double mean_area, uint32_t v)
         simplify_area_vector(at, b, c, normal);
         for (int axis = 0; axis < 3; axis++)
             facing[axis] += normal[axis];
-        const double weight = getenv("ALPHA") ? pow(unit(normal) / 2 / mean_area, atof(getenv("ALPHA"))) * mean_area
-                                              : sqrt(mean_area * unit(normal) / 2);
+        const double weight = sqrt(mean_area * sqrt(mean_area * unit(normal) / 2));
         simplify_quadric_add_plane(&q, normal, at, weight);
         simplify_quadric_add_point(&q, at, weight * stay_weight);
         q.weight += weight;
