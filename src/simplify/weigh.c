@@ -3,8 +3,9 @@
 #include "simplify/collapse.h"
 
 /* How much more a feature edge counts than a surface of its length squared, and how little the distance to a vertex
- * itself does: just enough that there is always a best place, in planes and along lines too. */
-static const double feature_weight = 10, stay_weight = 1e-12;
+ * itself does: just enough that there mostly is a best place, in planes and along lines too. With attributes it is
+ * more, so that these are not stretched where the surface is flat. */
+static const double feature_weight = 10, stay_weight = 1e-12, stay_with_attributes = 1e-7;
 
 static double unit(double v[3])
 {
@@ -51,10 +52,16 @@ static hewn_result find_mean_area(const simplify_work *work, double *out, hewn_e
 
 /* A triangle counts by the fourth root of its area times the mean of all to the third: by areas alone the tip of what
  * is thin counts for next to nothing, and the greatest distance comes to be there. */
+static double weigh_area(bool counted, double area, double mean_area)
+{
+    return counted ? area : sqrt(mean_area * sqrt(mean_area * area)); /* attributes are weighed by areas */
+}
+
 static void weigh_vertex(simplify_work *work, double mean_area, uint32_t v)
 {
     simplify_quadric q = {0};
     double facing[3] = {0};
+    const bool counted = work->wedges && work->wedges->counted > 0;
     uint32_t first = work->half[v], h = first;
     if (first == SIMPLIFY_GONE || work->rank[v] == SIMPLIFY_APART)
         return;
@@ -66,9 +73,9 @@ static void weigh_vertex(simplify_work *work, double mean_area, uint32_t v)
         simplify_area_vector(at, b, c, normal);
         for (int axis = 0; axis < 3; axis++)
             facing[axis] += normal[axis];
-        const double weight = sqrt(mean_area * sqrt(mean_area * unit(normal) / 2));
+        const double weight = weigh_area(counted, unit(normal) / 2, mean_area);
         simplify_quadric_add_plane(&q, normal, at, weight);
-        simplify_quadric_add_point(&q, at, weight * stay_weight);
+        simplify_quadric_add_point(&q, at, weight * (counted ? stay_with_attributes : stay_weight));
         q.weight += weight;
         if (work->flags[simplify_name(work, h)] & SIMPLIFY_FEATURE)
             add_feature(&q, at, b, normal);
