@@ -70,8 +70,15 @@ HEWN_API uint32_t hewn_label_mesh_find(const hewn_label_mesh *mesh, int64_t labe
 HEWN_API hewn_result hewn_label_mesh_smooth(hewn_label_mesh *mesh, const hewn_smooth_desc *desc,
                                             hewn_smooth_report *report, hewn_error *error);
 
-/* Simplifies all shells as one (hewn/simplify.h): they go on sharing what they share. Vertices where three or more
- * labels meet stay as they are; those between two labels may go, also onto these. Shells stay closed and manifold. */
+/* Simplifies all shells as one (hewn/simplify.h): what two labels share stays shared. Curves along which three or more
+ * labels meet become coarser as curves, in their place as well as may be; with lock_boundary they stay as they are.
+ * Where they end or cross, vertices stay. Every shell stays closed, manifold, oriented and of its topology. Numbers of
+ * triangles are those of the mesh, where what two labels share counts once; the distance is that of the mesh, all
+ * labels together. Of `desc`, labels, lock_labels, frozen and preserve are not looked at. The same bytes for any number
+ * of threads. On failure the mesh is as it was.
+ *
+ * HEWN_INVALID_ARGUMENT for a bad `desc`, and for no_self_intersections, which is not done here; the rest as
+ * hewn_polygons_simplify(). */
 HEWN_API hewn_result hewn_label_mesh_simplify(hewn_label_mesh *mesh, const hewn_simplify_desc *desc,
                                               hewn_simplify_report *report, hewn_error *error);
 

@@ -216,17 +216,6 @@ static void print_notes(const hewn_label_report *report)
         fprintf(stderr, "hewn: note: the table has no name for %" PRIu32 " of the labels\n", report->unnamed_count);
 }
 
-/* What is not manifold here are the curves where labels meet, and that is no fault. */
-static void print_simplified(const hewn_simplify_report *report)
-{
-    hewn_simplify_report told = *report;
-    told.unwalked_vertices = 0;
-    hewn_simplify_print(&told);
-    if (report->unwalked_vertices > 0)
-        fprintf(stderr, "hewn: note: %" PRIu64 " vertices where three or more labels meet stayed as they were\n",
-                report->unwalked_vertices);
-}
-
 static void print(const hewn_label_job_desc *desc, const hewn_label_report *report)
 {
     const hewn_conversion *done = &report->conversion;
@@ -251,7 +240,7 @@ static void print(const hewn_label_job_desc *desc, const hewn_label_report *repo
                 report->islands.kept_bodies, report->islands.bodies, report->islands.kept_cavities,
                 report->islands.cavities);
     if (report->simplified)
-        print_simplified(&report->simplify);
+        hewn_simplify_print(&report->simplify);
     print_notes(report);
 }
 

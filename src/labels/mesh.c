@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "hewn/labels.h"
 #include "labels/cut.h"
+#include "labels/faces.h"
 #include "labels/islands.h"
 #include "labels/relax.h"
 
@@ -60,19 +61,25 @@ static hewn_result bring_to_world(const hewn_volume *volume, hewn_label_mesh *me
     return finite ? HEWN_OK : hewn_fail(error, HEWN_LIMIT, "the volume's place in the world is too far for doubles");
 }
 
-/* Each label's triangles. */
-static hewn_result list_faces(hewn_label_mesh *mesh, hewn_error *error)
+hewn_result hewn_label_mesh_list_faces(hewn_label_mesh *mesh, hewn_error *error)
 {
-    mesh->first = hewn_alloc_zero((size_t)mesh->label_count + 3, sizeof *mesh->first);
-    mesh->faces = hewn_alloc(mesh->triangle_count, 2 * sizeof *mesh->faces);
-    if (!mesh->first || !mesh->faces)
+    uint64_t *first = hewn_alloc_zero((size_t)mesh->label_count + 3, sizeof *first);
+    uint32_t *faces = hewn_alloc(mesh->triangle_count, 2 * sizeof *faces);
+    if (!first || !faces) {
+        hewn_free(first);
+        hewn_free(faces);
         return fail_memory(error);
+    }
     for (uint64_t i = 0; i < 2 * mesh->triangle_count; i++)
-        mesh->first[mesh->sides[i] + 2]++;
+        first[mesh->sides[i] + 2]++;
     for (uint32_t n = 0; n <= mesh->label_count; n++)
-        mesh->first[n + 2] += mesh->first[n + 1];
+        first[n + 2] += first[n + 1];
     for (uint64_t i = 0; i < 2 * mesh->triangle_count; i++)
-        mesh->faces[mesh->first[mesh->sides[i] + 1]++] = (uint32_t)i;
+        faces[first[mesh->sides[i] + 1]++] = (uint32_t)i;
+    hewn_free(mesh->first);
+    hewn_free(mesh->faces);
+    mesh->first = first;
+    mesh->faces = faces;
     return HEWN_OK;
 }
 
@@ -92,7 +99,7 @@ static hewn_result make(const hewn_volume *volume, const hewn_label_desc *desc, 
     ids->labels = NULL;
     ids->voxel_count = NULL;
     HEWN_TRY(bring_to_world(volume, out, error));
-    return list_faces(out, error);
+    return hewn_label_mesh_list_faces(out, error);
 }
 
 hewn_result hewn_labels_mesh(const hewn_volume *volume, const hewn_label_desc *desc, hewn_label_mesh *out,
@@ -118,45 +125,6 @@ hewn_result hewn_label_mesh_smooth(hewn_label_mesh *mesh, const hewn_smooth_desc
                               .corners = mesh->indices,
                               .face_count = mesh->triangle_count};
     return hewn_polygons_smooth(&polygons, desc, mesh->positions, report, error);
-}
-
-/* What was made of faces keeps their sides. */
-static hewn_result take(hewn_label_mesh *mesh, hewn_simplified *from, hewn_error *error)
-{
-    uint16_t *sides = hewn_alloc(from->face_count, 2 * sizeof *sides);
-    if (!sides)
-        return fail_memory(error);
-    for (uint64_t f = 0; f < from->face_count; f++)
-        memcpy(sides + 2 * f, mesh->sides + 2 * (size_t)from->face_origins[f], 2 * sizeof *sides);
-    hewn_free(mesh->sides);
-    hewn_free(mesh->positions);
-    hewn_free(mesh->indices);
-    hewn_free(mesh->first);
-    hewn_free(mesh->faces);
-    mesh->sides = sides;
-    mesh->positions = from->positions;
-    mesh->indices = from->corners;
-    mesh->vertex_count = from->vertex_count;
-    mesh->triangle_count = from->face_count;
-    mesh->first = NULL;
-    mesh->faces = NULL;
-    from->positions = NULL;
-    from->corners = NULL;
-    return list_faces(mesh, error);
-}
-
-hewn_result hewn_label_mesh_simplify(hewn_label_mesh *mesh, const hewn_simplify_desc *desc,
-                                     hewn_simplify_report *report, hewn_error *error)
-{
-    hewn_polygons polygons = {.positions = mesh->positions,
-                              .vertex_count = mesh->vertex_count,
-                              .corners = mesh->indices,
-                              .face_count = mesh->triangle_count};
-    hewn_simplified simple;
-    HEWN_TRY(hewn_polygons_simplify(&polygons, desc, &simple, report, error));
-    hewn_result result = take(mesh, &simple, error);
-    hewn_simplified_destroy(&simple);
-    return result;
 }
 
 /* --- shells --------------------------------------------------------------------------------------------------------

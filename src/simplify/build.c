@@ -182,12 +182,37 @@ static hewn_result allocate(simplify_work *work, const hewn_polygons *triangles,
     work->twin = hewn_alloc(halves, sizeof *work->twin);
     work->face_origins = hewn_alloc(triangles->face_count, sizeof *work->face_origins);
     work->wedge = work->wedges ? hewn_alloc(halves, sizeof *work->wedge) : NULL;
+    work->tie = work->groups ? hewn_alloc(verts, sizeof *work->tie) : NULL;
     work->limit = work->limits ? hewn_alloc(verts, sizeof *work->limit) : NULL;
-    if ((work->limit || !work->limits) && (work->wedge || !work->wedges) && work->positions && work->half &&
-        work->rank && work->origins && work->into && work->tail && work->twin && work->face_origins)
+    if ((work->limit || !work->limits) && (work->tie || !work->groups) && (work->wedge || !work->wedges) &&
+        work->positions && work->half && work->rank && work->origins && work->into && work->tail && work->twin &&
+        work->face_origins)
         return HEWN_OK;
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying %llu triangles",
                      (unsigned long long)triangles->face_count);
+}
+
+/* Rings of the vertices of each group. */
+static hewn_result tie_groups(simplify_work *work, hewn_error *error)
+{
+    uint32_t most = 0;
+    for (uint32_t v = 0; v < work->vertex_count; v++)
+        most = work->groups[v] > most ? work->groups[v] : most;
+    uint32_t *last = hewn_alloc((size_t)most + 1, sizeof *last);
+    if (!last)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
+    memset(last, 0xFF, ((size_t)most + 1) * sizeof *last);
+    for (uint32_t v = 0; v < work->vertex_count; v++) {
+        uint32_t *of_group = &last[work->groups[v]];
+        work->tie[v] = v;
+        if (*of_group != HEWN_NONE) {
+            work->tie[v] = work->tie[*of_group];
+            work->tie[*of_group] = v;
+        }
+        *of_group = v;
+    }
+    hewn_free(last);
+    return HEWN_OK;
 }
 
 hewn_result hewn_simplify_build(simplify_work *work, const hewn_polygons *triangles, hewn_error *error)
@@ -213,7 +238,7 @@ hewn_result hewn_simplify_build(simplify_work *work, const hewn_polygons *triang
     for (uint32_t v = 0; v < work->vertex_count; v++)
         work->live_vertices += work->half[v] != SIMPLIFY_GONE;
     hewn_free(corners);
-    return HEWN_OK;
+    return work->groups ? tie_groups(work, error) : HEWN_OK;
 }
 
 void hewn_simplify_release(simplify_work *work)
@@ -232,5 +257,6 @@ void hewn_simplify_release(simplify_work *work)
     hewn_free(work->face_origins);
     hewn_free(work->wedge);
     hewn_free(work->limit);
+    hewn_free(work->tie);
     *work = (simplify_work){0};
 }

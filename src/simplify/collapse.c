@@ -4,9 +4,60 @@
  */
 enum { MOST_RING = 192 };
 
-/* A triangle may turn by this much at a time (the cosine between its normals), and its shape, 1 for equal sides and 0
- * without area, may get this bad, or worse where it was worse. */
-static const double least_cosine = 0.2, least_shape = 0.02;
+/* A triangle may turn by this much at a time (the cosine between its normals). Its shape, 1 for equal sides and 0
+ * without area, may get as bad as the last, or worse where it was worse; below the one before, it is a sliver. */
+static const double least_cosine = 0.2, least_shape = 0.02, no_shape = 1e-4;
+
+/* --- edges of a complex ------------------------------------------------------------------------------------------- */
+
+/* An edge where fans of a complex meet is there once for each of them. */
+typedef struct edge_side {
+    uint32_t half, gone, kept;
+} edge_side;
+
+/* All that become one with the edge of a plan; 1 where its vertex that goes is not tied. 0: the fans do not agree. */
+static uint32_t list_sides(const simplify_work *work, uint32_t half, uint32_t gone, uint32_t kept,
+                           edge_side sides[SIMPLIFY_MOST_TIED])
+{
+    const uint32_t group = simplify_group(work, kept);
+    uint32_t count = 0, at = gone;
+    if (!simplify_is_tied(work, gone)) {
+        sides[0] = (edge_side){half, gone, kept};
+        return 1;
+    }
+    do {
+        uint32_t h = work->half[at], in = simplify_prev(h);
+        if (count == SIMPLIFY_MOST_TIED || work->twin[h] != HEWN_NONE)
+            return 0;
+        if (simplify_group(work, simplify_head(work, h)) == group) {
+            sides[count++] = (edge_side){h, at, simplify_head(work, h)};
+        } else {
+            for (; work->twin[in] != HEWN_NONE; in = simplify_prev(h))
+                h = work->twin[in];
+            if (simplify_group(work, work->tail[in]) != group)
+                return 0;
+            sides[count++] = (edge_side){in, at, work->tail[in]};
+        }
+        at = work->tie[at];
+    } while (at != gone);
+    return count;
+}
+
+/* The sum of both ends' quadrics, of all fans. */
+static simplify_quadric sum_ends(const simplify_work *work, const simplify_plan *plan)
+{
+    edge_side sides[SIMPLIFY_MOST_TIED];
+    simplify_quadric q = work->quadrics[plan->gone];
+    simplify_quadric_add(&q, &work->quadrics[plan->kept]);
+    const uint32_t count =
+        simplify_is_tied(work, plan->gone) ? list_sides(work, plan->half, plan->gone, plan->kept, sides) : 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (sides[i].gone != plan->gone) {
+            simplify_quadric_add(&q, &work->quadrics[sides[i].gone]);
+            simplify_quadric_add(&q, &work->quadrics[sides[i].kept]);
+        }
+    return q;
+}
 
 /* --- what it costs ------------------------------------------------------------------------------------------------ */
 
@@ -52,9 +103,7 @@ simplify_plan hewn_simplify_plan(const simplify_work *work, uint32_t half)
     const bool feature = work->flags[half] & SIMPLIFY_FEATURE;
     if (low >= SIMPLIFY_CORNER || high == SIMPLIFY_APART || (low == SIMPLIFY_CREASE && !feature))
         return plan;
-    simplify_quadric q = work->quadrics[a], all;
-    simplify_quadric_add(&q, &work->quadrics[b]);
-    all = q;
+    simplify_quadric q = sum_ends(work, &plan), all = q;
     const bool counted = work->wedges && work->wedges->counted > 0;
     const simplify_pairs pairs = counted ? hewn_simplify_pair(work, half, a) : (simplify_pairs){0};
     if (counted && low == high)
@@ -151,10 +200,10 @@ static void facing_of(const simplify_work *work, uint32_t p, uint32_t q, double 
         out[axis] = (double)work->facing[3 * (size_t)p + axis] + (double)work->facing[3 * (size_t)q + axis];
 }
 
-/* Whether the triangle of a vertex and two neighbours stays sound when the vertex moves: it turns little, does not turn
- * away from where the input faced, and does not become a sliver. */
+/* Whether the triangle of a vertex and two neighbours stays sound when the vertex moves: it turns little and does not
+ * turn away from where the input faced. `*slim` where it becomes a sliver. */
 static bool turn_allowed(const double from[3], const double to[3], const double p[3], const double q[3],
-                         const double facing[3])
+                         const double facing[3], bool *slim)
 {
     double before[3], after[3];
     simplify_area_vector(from, p, q, before);
@@ -165,15 +214,20 @@ static bool turn_allowed(const double from[3], const double to[3], const double 
     if (simplify_dot(after, facing) < 0 && simplify_dot(before, facing) >= 0)
         return false;
     double now = shape(to, p, q, new_area);
-    return now >= least_shape || now >= shape(from, p, q, old_area);
+    if (now < no_shape && now < shape(from, p, q, old_area))
+        return false;
+    *slim |= now < least_shape && now < shape(from, p, q, old_area);
+    return true;
 }
 
 /* The triangles around `v` but for those with `other`. */
-static bool turns_allowed(const simplify_work *work, uint32_t v, uint32_t other, const ring *around, const double to[3])
+static bool turns_allowed(const simplify_work *work, uint32_t v, uint32_t other, const ring *around,
+                          simplify_plan *plan)
 {
+    const double *to = plan->at;
     const double *from = simplify_at(work, v);
     double own[3], facing[3];
-    facing_of(work, v, other, own);
+    facing_of(work, v, other != HEWN_NONE ? other : v, own);
     for (uint32_t i = 0; i < around->faces; i++) {
         uint32_t p = around->neighbours[i], q = around->neighbours[i + 1 < around->count ? i + 1 : 0];
         if (p == other || q == other)
@@ -181,10 +235,71 @@ static bool turns_allowed(const simplify_work *work, uint32_t v, uint32_t other,
         facing_of(work, p, q, facing);
         for (int axis = 0; axis < 3; axis++)
             facing[axis] += own[axis];
-        if (!turn_allowed(from, to, simplify_at(work, p), simplify_at(work, q), facing))
+        if (!turn_allowed(from, to, simplify_at(work, p), simplify_at(work, q), facing, &plan->slim))
             return false;
     }
     return true;
+}
+
+/* --- complexes ---------------------------------------------------------------------------------------------------- */
+
+enum { MOST_AROUND = 1024 };
+
+/* What is around all fans of a vertex, each once; false where it is too much or cannot be walked. */
+static bool gather_all(const simplify_work *work, uint32_t v, uint32_t *out, uint32_t *count)
+{
+    uint32_t at = v;
+    *count = 0;
+    do {
+        ring around;
+        if (work->rank[at] == SIMPLIFY_APART || !gather(work, at, &around))
+            return false;
+        for (uint32_t i = 0; i < around.count; i++) {
+            const uint32_t group = simplify_group(work, around.neighbours[i]);
+            uint32_t k = 0;
+            while (k < *count && out[k] != group)
+                k++;
+            if (k == MOST_AROUND)
+                return false;
+            out[k] = group;
+            *count += k == *count;
+        }
+        at = work->tie ? work->tie[at] : at;
+    } while (at != v);
+    return true;
+}
+
+/* The link condition of the whole complex: what is next to both ends is across a triangle of the edge. With
+ * side_allowed() that holds of every shell too: an edge of a triangle beside it is in a shell without that triangle
+ * only where fans meet, and not both are. A vertex amid three triangles stays if what they would become may be there.
+ */
+static bool complex_allowed(const simplify_work *work, const simplify_plan *plan, const ring *gone, uint32_t across)
+{
+    uint32_t one[MOST_AROUND], two[MOST_AROUND], ones, twos, common = 0;
+    if (gone->count == 3 && gone->faces == 3 && simplify_is_tied(work, plan->kept))
+        return false;
+    if (!gather_all(work, plan->gone, one, &ones) || !gather_all(work, plan->kept, two, &twos))
+        return false;
+    for (uint32_t i = 0; i < ones; i++)
+        for (uint32_t k = 0; k < twos; k++)
+            common += one[i] == two[k];
+    return common == across;
+}
+
+/* The fans of a tied edge. */
+static bool sides_allowed(const simplify_work *work, simplify_plan *plan)
+{
+    edge_side sides[SIMPLIFY_MOST_TIED];
+    const uint32_t count = list_sides(work, plan->half, plan->gone, plan->kept, sides);
+    ring gone, kept;
+    plan->slim = false;
+    for (uint32_t i = 0; i < count; i++)
+        if (!gather(work, sides[i].gone, &gone) || !gather(work, sides[i].kept, &kept) ||
+            !links_allowed(work, sides[i].half, &gone, &kept) ||
+            !turns_allowed(work, sides[i].gone, sides[i].kept, &gone, plan) ||
+            !turns_allowed(work, sides[i].kept, sides[i].gone, &kept, plan))
+            return false;
+    return count > 0 && complex_allowed(work, plan, &gone, count);
 }
 
 /* --- volume ------------------------------------------------------------------------------------------------------- */
@@ -238,12 +353,25 @@ static void keep_volume(const simplify_work *work, const ring *gone, const ring 
 bool hewn_simplify_allowed(const simplify_work *work, simplify_plan *plan)
 {
     ring gone, kept;
+    if (simplify_is_tied(work, plan->gone))
+        return sides_allowed(work, plan);
     if (!gather(work, plan->gone, &gone) || !gather(work, plan->kept, &kept) ||
-        !links_allowed(work, plan->half, &gone, &kept))
+        !links_allowed(work, plan->half, &gone, &kept) ||
+        (work->groups && !complex_allowed(work, plan, &gone, work->twin[plan->half] == HEWN_NONE ? 1 : 2)))
         return false;
     keep_volume(work, &gone, &kept, plan);
-    return turns_allowed(work, plan->gone, plan->kept, &gone, plan->at) &&
-           turns_allowed(work, plan->kept, plan->gone, &kept, plan->at);
+    plan->slim = false;
+    return turns_allowed(work, plan->gone, plan->kept, &gone, plan) &&
+           turns_allowed(work, plan->kept, plan->gone, &kept, plan);
+}
+
+bool hewn_simplify_may_move(const simplify_work *work, uint32_t v, const double to[3])
+{
+    ring around;
+    simplify_plan plan = {.gone = v, .kept = HEWN_NONE};
+    for (int axis = 0; axis < 3; axis++)
+        plan.at[axis] = to[axis];
+    return gather(work, v, &around) && turns_allowed(work, v, HEWN_NONE, &around, &plan) && !plan.slim;
 }
 
 /* --- doing it ----------------------------------------------------------------------------------------------------- */
@@ -310,12 +438,11 @@ static void join_wedges(simplify_work *work, const simplify_plan *plan)
                               work->rank[plan->gone] < work->rank[plan->kept]);
 }
 
-uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan)
+/* One fan. */
+static uint32_t collapse(simplify_work *work, const edge_side *side, const double place_at[3])
 {
-    const uint32_t gone = plan->gone, kept = plan->kept, half = plan->half, twin = work->twin[half];
+    const uint32_t gone = side->gone, kept = side->kept, half = side->half, twin = work->twin[half];
     uint32_t first = work->half[gone], h = first;
-    if (work->wedges)
-        join_wedges(work, plan);
     do {
         uint32_t turned = simplify_turn(work, h);
         work->tail[h] = kept;
@@ -332,10 +459,22 @@ uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan)
     for (size_t axis = 0; axis < 3; axis++)
         work->facing[3 * (size_t)kept + axis] += work->facing[3 * (size_t)gone + axis];
     for (size_t axis = 0; axis < 3; axis++)
-        work->positions[3 * (size_t)kept + axis] = plan->at[axis];
+        work->positions[3 * (size_t)kept + axis] = place_at[axis];
     work->into[work->origins[gone]] = work->origins[kept];
     if (work->limit)
         work->limit[kept] = fminf(work->limit[kept], work->limit[gone]);
     stir(work, kept);
     return twin == HEWN_NONE ? 1 : 2;
+}
+
+uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan)
+{
+    edge_side sides[SIMPLIFY_MOST_TIED];
+    const uint32_t count = list_sides(work, plan->half, plan->gone, plan->kept, sides);
+    uint32_t removed = 0;
+    if (work->wedges)
+        join_wedges(work, plan);
+    for (uint32_t i = 0; i < count; i++)
+        removed += collapse(work, &sides[i], plan->at);
+    return removed;
 }

@@ -11,6 +11,7 @@ typedef struct simplify_plan {
     double at[3];
     double cost; /* infinite where ranks do not allow it */
     bool far;    /* past the largest error */
+    bool slim;   /* a triangle would become a sliver and was none; hewn_simplify_allowed() tells */
 } simplify_plan;
 
 /* What the collapse of an edge would be by its quadrics and ranks alone. */
@@ -18,6 +19,9 @@ simplify_plan hewn_simplify_plan(const simplify_work *work, uint32_t half);
 
 /* Whether the result stays manifold, of the same topology, and no triangle turns over or folds. */
 bool hewn_simplify_allowed(const simplify_work *work, simplify_plan *plan);
+
+/* Whether a vertex may go elsewhere by itself: no triangle around it turns over, away or into a sliver. */
+bool hewn_simplify_may_move(const simplify_work *work, uint32_t v, const double to[3]);
 
 /* Does it. Keys around `kept` become lower bounds. Returns how many triangles are gone. */
 uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan);

@@ -65,6 +65,36 @@ static void rank_vertex(simplify_work *work, uint32_t v)
     work->rank[v] = features == 0 ? SIMPLIFY_SMOOTH : features == 2 ? SIMPLIFY_CREASE : SIMPLIFY_CORNER;
 }
 
+/* A vertex of a complex may move along its curve where it is on one, and on that alone: each of its fans lies between
+ * the same two neighbours. Else all of its fans stay where they are. */
+static void rank_tied(simplify_work *work, uint32_t v)
+{
+    uint32_t ends[2] = {HEWN_NONE, HEWN_NONE}, count = 0, at = v;
+    uint8_t most = 0;
+    bool curve = true;
+    do {
+        most = work->rank[at] > most ? work->rank[at] : most;
+        curve = curve && work->rank[at] == SIMPLIFY_CREASE && work->twin[work->half[at]] == HEWN_NONE &&
+                ++count <= SIMPLIFY_MOST_TIED;
+        if (curve) {
+            uint32_t h = work->half[at], in = simplify_prev(h);
+            const uint32_t one = simplify_group(work, simplify_head(work, h));
+            for (; work->twin[in] != HEWN_NONE; in = simplify_prev(h))
+                h = work->twin[in];
+            const uint32_t two = simplify_group(work, work->tail[in]);
+            ends[0] = at == v ? one : ends[0];
+            ends[1] = at == v ? two : ends[1];
+            curve = one != two && ((one == ends[0] && two == ends[1]) || (one == ends[1] && two == ends[0]));
+        }
+        at = work->tie[at];
+    } while (at != v);
+    const uint8_t rank = curve ? SIMPLIFY_CREASE : most > SIMPLIFY_CORNER ? SIMPLIFY_LOCKED : SIMPLIFY_CORNER;
+    do {
+        work->rank[at] = work->rank[at] == SIMPLIFY_APART ? SIMPLIFY_APART : rank;
+        at = work->tie[at];
+    } while (at != v);
+}
+
 hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error)
 {
     const uint32_t halves = 3 * work->face_count;
@@ -88,5 +118,8 @@ hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error)
             work->rank[v] = SIMPLIFY_LOCKED;
         rank_vertex(work, v);
     }
+    for (uint32_t v = 0; work->tie && v < work->vertex_count; v++)
+        if (work->tie[v] > v && work->half[v] != SIMPLIFY_GONE) /* the same again from each but the greatest */
+            rank_tied(work, v);
     return HEWN_OK;
 }

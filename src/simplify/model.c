@@ -43,7 +43,7 @@ hewn_result hewn_model_simplify(hewn_model *model, const hewn_simplify_desc *des
     own.lock_labels &= own.labels != NULL;
     const bool wedges = channels.wedges.scalars > 0 || channels.corners;
     if (done == HEWN_OK)
-        done = hewn_simplify_polygons(&polygons, &own, wedges ? &channels.wedges : NULL, &result, report, error);
+        done = hewn_simplify_polygons(&polygons, &own, wedges ? &channels.wedges : NULL, NULL, &result, report, error);
     if (done == HEWN_OK)
         done = make_model(model, &channels, &result, &out, error);
     if (done == HEWN_OK && !(preserve & HEWN_PRESERVE_NORMAL))

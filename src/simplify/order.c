@@ -196,8 +196,12 @@ hewn_result hewn_simplify_order(simplify_work *work, uint32_t round, hewn_error 
     done = order_of_faces && move_halves(work, order_of_faces, number) &&
            move((void **)&work->face_origins, sizeof *work->face_origins, order_of_faces, work->live_faces);
     hewn_free(order_of_faces);
+    for (uint32_t v = 0; done && work->tie && v < work->vertex_count; v++)
+        if (work->half[v] != SIMPLIFY_GONE)
+            work->tie[v] = number[work->tie[v]];
     hewn_free(number);
-    done = done && move((void **)&work->positions, 3 * sizeof *work->positions, order, verts) &&
+    done = done && move((void **)&work->tie, sizeof *work->tie, order, verts) &&
+           move((void **)&work->positions, 3 * sizeof *work->positions, order, verts) &&
            move((void **)&work->quadrics, sizeof *work->quadrics, order, verts) &&
            move((void **)&work->facing, 3 * sizeof *work->facing, order, verts) &&
            move((void **)&work->half, sizeof *work->half, order, verts) &&

@@ -105,16 +105,8 @@ static void mark_far(simplify_promise *job)
             job->offending[after->vertex_origins[after->corners[3 * t + k]]] = 1;
 }
 
-static bool is_original(const simplify_promise *job, uint32_t face)
-{
-    const hewn_simplified *after = &job->out->mesh;
-    for (uint64_t k = 0; k < 3; k++)
-        if (!job->in->frozen[after->vertex_origins[after->corners[3 * (uint64_t)face + k]]])
-            return false;
-    return true;
-}
-
-/* Pairs of triangles that are both the input's own are its affair. */
+/* Corners of triangles that run through each other, and with them what joined them. Where these are as they were
+ * already, that changes nothing any more: it is the input's own affair. */
 static hewn_result mark_crossings(simplify_promise *job, hewn_error *error)
 {
     const hewn_simplified *after = &job->out->mesh;
@@ -122,8 +114,7 @@ static hewn_result mark_crossings(simplify_promise *job, hewn_error *error)
     HEWN_TRY(hewn_count_self_intersections(after->positions, after->vertex_count, after->corners, after->face_count,
                                            MOST_PAIRS, job->pairs, job->in->desc.progress, &count, error));
     for (uint64_t p = 0; p < count && p < MOST_PAIRS; p++)
-        for (int side = 0; side < 2 && !(is_original(job, job->pairs[p][0]) && is_original(job, job->pairs[p][1]));
-             side++)
+        for (int side = 0; side < 2; side++)
             for (uint64_t k = 0; k < 3; k++)
                 job->offending[after->vertex_origins[after->corners[3 * (uint64_t)job->pairs[p][side] + k]]] = 1;
     return HEWN_OK;

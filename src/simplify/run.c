@@ -9,6 +9,10 @@
 /* Vertices of a part: what its collapses touch fits in a core's second cache. */
 enum { PART = 4096, MOST_ROUNDS = 40, BINS = 1 << 16 };
 
+/* How much more a collapse that makes a sliver costs. In what is flat that is little still: there, only slivers may be
+ * left to make. */
+static const float slim_factor = 100;
+
 /* --- one queue ---------------------------------------------------------------------------------------------------- */
 
 /* Edges that are collapsed in the order of their costs: all, or those inside one part. */
@@ -73,7 +77,7 @@ static hewn_result step(edge_front *front)
     if (!(work->flags[name] & SIMPLIFY_FRESH)) {
         const float cost = (float)plan.cost;
         work->key[name] = cost;
-        work->flags[name] |= SIMPLIFY_FRESH;
+        work->flags[name] = (uint8_t)((work->flags[name] & ~SIMPLIFY_SLIM) | SIMPLIFY_FRESH);
         if (cost > front->limit || isinf(cost))
             return HEWN_OK;
         if (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0])
@@ -81,8 +85,21 @@ static hewn_result step(edge_front *front)
     }
     if (plan.far || !hewn_simplify_allowed(work, &plan))
         return HEWN_OK;
+    if (plan.slim && work->wedges && work->wedges->counted > 0) /* attributes would be stretched along it */
+        return HEWN_OK;
+    if (plan.slim && !(work->flags[name] & SIMPLIFY_SLIM)) {
+        work->key[name] *= slim_factor;
+        work->flags[name] |= SIMPLIFY_SLIM;
+        return may_queue(front, name) ? enqueue(front, name) : HEWN_OK;
+    }
     front->removed += hewn_simplify_collapse(work, &plan);
-    return requeue_around(front, plan.kept);
+    for (uint32_t v = plan.kept;;) {
+        if (work->rank[v] != SIMPLIFY_APART)
+            HEWN_TRY(requeue_around(front, v));
+        v = work->tie ? work->tie[v] : v;
+        if (v == plan.kept)
+            return HEWN_OK;
+    }
 }
 
 static hewn_result drain(edge_front *front)
@@ -101,7 +118,7 @@ static void find_inside(const simplify_work *work, uint8_t *inside)
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         uint32_t first = work->half[v], h = first;
-        inside[v] = work->rank[v] != SIMPLIFY_APART;
+        inside[v] = work->rank[v] != SIMPLIFY_APART && !simplify_is_tied(work, v);
         if (!inside[v])
             continue;
         do {

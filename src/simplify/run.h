@@ -15,6 +15,7 @@ typedef struct simplify_input {
     int32_t *labels;         /* of each triangle */
     uint32_t *corner_wedges; /* of each triangle's corners; NULL where they are those of `wedges` */
     uint8_t *frozen;         /* one a vertex: stays, for the sake of a promise; or NULL */
+    const uint32_t *groups;  /* one a vertex: those with equal ones are one vertex of a complex; or NULL */
     float *limits;           /* one a vertex: the largest error by its quadric, a length; or NULL */
 } simplify_input;
 
@@ -31,9 +32,12 @@ void hewn_simplify_result_release(simplify_result *result);
 hewn_result hewn_simplify_once(const simplify_input *in, simplify_result *out, hewn_simplify_report *report,
                                hewn_error *error);
 
-/* hewn_polygons_simplify(), with wedges or NULL. */
+/* Whether polygons can be simplified. HEWN_BAD_INPUT, HEWN_LIMIT. */
+hewn_result hewn_simplify_check_polygons(const hewn_polygons *polygons, hewn_error *error);
+
+/* hewn_polygons_simplify(), with wedges or NULL, and groups of a complex (simplify_input) or NULL. */
 hewn_result hewn_simplify_polygons(const hewn_polygons *polygons, const hewn_simplify_desc *desc,
-                                   const simplify_wedges *wedges, simplify_result *out, hewn_simplify_report *report,
-                                   hewn_error *error);
+                                   const simplify_wedges *wedges, const uint32_t *groups, simplify_result *out,
+                                   hewn_simplify_report *report, hewn_error *error);
 
 #endif

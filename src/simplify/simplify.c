@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "mesh/cut.h"
+#include "simplify/balance.h"
 #include "simplify/desc.h"
 #include "simplify/promise.h"
 #include "simplify/run.h"
@@ -40,7 +41,7 @@ static void release(simplify_input *in)
     hewn_free(in->limits);
 }
 
-static hewn_result check_polygons(const hewn_polygons *polygons, hewn_error *error)
+hewn_result hewn_simplify_check_polygons(const hewn_polygons *polygons, hewn_error *error)
 {
     const hewn_model view = {.vertex_count = polygons->vertex_count,
                              .face_count = polygons->face_count,
@@ -148,8 +149,11 @@ hewn_result hewn_simplify_once(const simplify_input *in, simplify_result *out, h
                                hewn_error *error)
 {
     simplify_wedges wedges = in->wedges ? *in->wedges : (simplify_wedges){0};
-    simplify_work work = {
-        .desc = &in->desc, .frozen = in->frozen, .limits = in->limits, .wedges = in->wedges ? &wedges : NULL};
+    simplify_work work = {.desc = &in->desc,
+                          .frozen = in->frozen,
+                          .limits = in->limits,
+                          .groups = in->groups,
+                          .wedges = in->wedges ? &wedges : NULL};
     const uint64_t target = hewn_simplify_target(&in->desc, in->triangles.face_count);
     const size_t scalars = (size_t)wedges.count * wedges.scalars;
     *out = (simplify_result){0};
@@ -164,7 +168,8 @@ hewn_result hewn_simplify_once(const simplify_input *in, simplify_result *out, h
         result = prepare(&work, in, report, error);
 
     if (result == HEWN_OK)
-        result = hewn_simplify_run(&work, target < work.live_faces ? (uint32_t)target : work.live_faces, error);
+        result = hewn_simplify_balanced(&work, &in->triangles,
+                                        target < work.live_faces ? (uint32_t)target : work.live_faces, error);
     if (result == HEWN_OK) {
         describe(&work, target, report);
         result = hand_out(&work, in, out, error);
@@ -182,16 +187,16 @@ hewn_result hewn_simplify_once(const simplify_input *in, simplify_result *out, h
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
 hewn_result hewn_simplify_polygons(const hewn_polygons *polygons, const hewn_simplify_desc *desc,
-                                   const simplify_wedges *wedges, simplify_result *out, hewn_simplify_report *report,
-                                   hewn_error *error)
+                                   const simplify_wedges *wedges, const uint32_t *groups, simplify_result *out,
+                                   hewn_simplify_report *report, hewn_error *error)
 {
     hewn_simplify_report done = {0};
     *out = (simplify_result){0};
     if (report)
         *report = done;
     HEWN_TRY(hewn_simplify_check(desc, error));
-    HEWN_TRY(check_polygons(polygons, error));
-    simplify_input in = {.desc = *desc, .wedges = wedges};
+    HEWN_TRY(hewn_simplify_check_polygons(polygons, error));
+    simplify_input in = {.desc = *desc, .wedges = wedges, .groups = groups};
     hewn_result result = cut(polygons, &in, error);
     if (result == HEWN_OK && 3 * in.triangles.face_count >= SIMPLIFY_GONE)
         result = hewn_fail(error, HEWN_LIMIT, "too many triangles to simplify: %llu",
@@ -210,7 +215,7 @@ hewn_result hewn_polygons_simplify(const hewn_polygons *polygons, const hewn_sim
 {
     simplify_result result;
     *out = (hewn_simplified){0};
-    HEWN_TRY(hewn_simplify_polygons(polygons, desc, NULL, &result, report, error));
+    HEWN_TRY(hewn_simplify_polygons(polygons, desc, NULL, NULL, &result, report, error));
     *out = result.mesh;
     result.mesh = (hewn_simplified){0};
     hewn_simplify_result_release(&result);

@@ -20,6 +20,9 @@
 /* Meshes of fewer vertices are done by one thread: waking others takes longer. */
 enum { SIMPLIFY_FEW = 8000 };
 
+/* The most fans of a vertex of a complex that may move; others stay. */
+enum { SIMPLIFY_MOST_TIED = 16 };
+
 /* What a vertex may do. A higher rank stays where a lower one joins it; vertices from CORNER on never move and never
  * join another, and those that are APART take no part in any collapse. */
 typedef enum simplify_rank {
@@ -33,8 +36,9 @@ typedef enum simplify_rank {
 /* Of edges, at their names. Boundary edges are features too. */
 enum {
     SIMPLIFY_FEATURE = 1,
-    SIMPLIFY_FRESH = 2, /* its key is that of its ends as they are; else it is a lower bound */
-    SIMPLIFY_QUEUED = 4 /* waits in a queue */
+    SIMPLIFY_FRESH = 2,  /* its key is that of its ends as they are; else it is a lower bound */
+    SIMPLIFY_QUEUED = 4, /* waits in a queue */
+    SIMPLIFY_SLIM = 8    /* its collapse makes a sliver, which its key was raised for */
 };
 
 typedef struct simplify_work {
@@ -50,7 +54,10 @@ typedef struct simplify_work {
     uint32_t *half;
     uint8_t *rank;
     uint32_t *origins; /* the input's vertex */
+    uint32_t *tie;     /* the next of the vertices that are one in a complex, in a ring; NULL: none are */
     float *limit;      /* the root of value / weight that a collapse here may come to; NULL: any */
+
+    const uint32_t *groups; /* of the input's vertices: equal for those that are one; NULL: none are */
 
     uint32_t face_count, live_faces;
     uint32_t *tail, *twin;
@@ -85,6 +92,17 @@ static inline uint32_t simplify_name(const simplify_work *work, uint32_t h)
     return h < work->twin[h] ? h : work->twin[h];
 }
 
+/* A number for what a vertex is in the complex. */
+static inline uint32_t simplify_group(const simplify_work *work, uint32_t v)
+{
+    return work->groups ? work->groups[work->origins[v]] : v;
+}
+
+static inline bool simplify_is_tied(const simplify_work *work, uint32_t v)
+{
+    return work->tie && work->tie[v] != v;
+}
+
 static inline const double *simplify_at(const simplify_work *work, uint32_t v)
 {
     return work->positions + 3 * (size_t)v;
@@ -112,6 +130,9 @@ hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error);
 
 /* Quadrics of all vertices and wedges, then keys of all edges. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error);
+
+/* Keys of all edges, as quadrics are now. */
+void hewn_simplify_key(simplify_work *work);
 
 /* Puts vertices and triangles that are left into an order in which neighbours are near each other, along a curve of
  * Morton's through cubes that lie elsewhere for each `round`; removed ones are dropped. HEWN_OUT_OF_MEMORY. */

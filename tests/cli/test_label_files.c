@@ -138,6 +138,44 @@ static void test_together(void **state)
     run_folder_destroy(folder);
 }
 
+/* Fewer triangles, shells as sound as before, and vertices on borders that are still shared. */
+static void test_simplified(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    write_labels(folder);
+    run_result result =
+        run_in(0, folder,
+               (run_desc){.arguments = {"convert", "a.nrrd", "--labels", "all", "--simplify", "ratio:0.4", "-o",
+                                        "all.ply", "--complex", "--report", "r.json"}});
+    assert_has(result.err, " triangles left");
+    run_result_destroy(&result);
+    char *report = run_read_file(run_path(folder, "r.json"), NULL);
+    assert_true(json_is_valid(report));
+    const double before = json_number(report, "simplify.triangles_before");
+    const double after = json_number(report, "simplify.triangles");
+    assert_true(after > 0 && after <= 0.4 * before);
+    assert_true(json_number(report, "counts.faces") == after);
+    double faces = 0;
+    for (int n = 0; n < 3; n++) {
+        char key[64];
+        snprintf(key, sizeof key, "labels.%d.certificate.closed", n);
+        assert_true(json_bool(report, key));
+        snprintf(key, sizeof key, "labels.%d.certificate.manifold", n);
+        assert_true(json_bool(report, key));
+        snprintf(key, sizeof key, "labels.%d.faces", n);
+        faces += json_number(report, key);
+    }
+    assert_true(faces > after); /* faces between two labels are there once */
+    free(report);
+    result = run_in(
+        2, folder,
+        (run_desc){.arguments = {"convert", "a.nrrd", "--labels", "all", "--simplify", "ratio:2", "-o", "bad.ply"}});
+    assert_has(result.err, "ratio");
+    run_result_destroy(&result);
+    run_folder_destroy(folder);
+}
+
 static void test_refused(void **state)
 {
     (void)state;
@@ -211,8 +249,8 @@ static void test_brain(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_glb),     cmocka_unit_test(test_files), cmocka_unit_test(test_together),
-        cmocka_unit_test(test_refused), cmocka_unit_test(test_brain),
+        cmocka_unit_test(test_glb),        cmocka_unit_test(test_files),   cmocka_unit_test(test_together),
+        cmocka_unit_test(test_simplified), cmocka_unit_test(test_refused), cmocka_unit_test(test_brain),
     };
     return cmocka_run_group_tests_name("label_files", tests, NULL, NULL);
 }

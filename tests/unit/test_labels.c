@@ -59,9 +59,9 @@ static double signed_volume(const double *positions, const uint32_t *corners, ui
     return sum / 6;
 }
 
-/* Whether a shell is closed, manifold and oriented outward, also when equal positions are one vertex. The volume of it.
- */
-static double check_shell(const hewn_label_mesh *mesh, uint32_t number)
+/* Whether a shell is closed, manifold and oriented outward (`flat`: or without volume), also when equal positions are
+ * one vertex. The volume of it. */
+static double check_any_shell(const hewn_label_mesh *mesh, uint32_t number, bool flat)
 {
     hewn_model shell;
     hewn_check *check;
@@ -75,10 +75,15 @@ static double check_shell(const hewn_label_mesh *mesh, uint32_t number)
                  is.closed, is.manifold, (int)is.non_manifold_edges, (int)is.non_manifold_vertices, is.oriented,
                  (int)is.degenerate_faces);
     double volume = signed_volume(shell.positions, shell.corners, shell.face_count);
-    assert_true(volume > 0);
+    assert_true(volume > 0 || flat);
     hewn_check_destroy(&check);
     hewn_model_destroy(&shell);
     return volume;
+}
+
+static double check_shell(const hewn_label_mesh *mesh, uint32_t number)
+{
+    return check_any_shell(mesh, number, false);
 }
 
 static int compare_points(const void *a, const void *b)
@@ -383,6 +388,160 @@ static void test_smooth(void **state)
     }
 }
 
+/* --- simplification ---------------------------------------------------------------------------------------------- */
+
+static double volume_of(const hewn_label_mesh *mesh, uint32_t number)
+{
+    double sum = 0;
+    for (uint64_t i = mesh->first[number]; i < mesh->first[number + 1]; i++) {
+        const double one = signed_volume(mesh->positions, mesh->indices + 3 * (size_t)(mesh->faces[i] >> 1), 1);
+        sum += mesh->faces[i] & 1 ? -one : one;
+    }
+    return sum;
+}
+
+static int64_t euler_of(const hewn_label_mesh *mesh, uint32_t number)
+{
+    hewn_model shell;
+    hewn_check *check;
+    assert_int_equal(hewn_label_mesh_shell(mesh, number, &shell, NULL), HEWN_OK);
+    const hewn_polygons polygons = hewn_model_polygons(&shell);
+    assert_int_equal(hewn_check_polygons(&polygons, &(hewn_check_desc){.skip_self_intersections = true}, &check, NULL),
+                     HEWN_OK);
+    const int64_t euler = check->euler, components = (int64_t)check->certificate.components;
+    hewn_check_destroy(&check);
+    hewn_model_destroy(&shell);
+    return 1000 * components + euler;
+}
+
+/* Each shell alone is sound and has the components and handles that it had, and together they still fill what they
+ * filled without a gap: what two share is the same to the bit, for the mesh has it once. */
+static void check_simplified(const hewn_label_mesh *before, const hewn_label_mesh *after, bool flat)
+{
+    double inside = 0;
+    assert_int_equal(before->label_count, after->label_count);
+    for (uint32_t n = 1; n <= after->label_count; n++) {
+        inside += check_any_shell(after, n, flat);
+        assert_int_equal(euler_of(before, n), euler_of(after, n));
+    }
+    assert_true(fabs(inside + volume_of(after, 0)) <= 1e-9 * (1 + inside));
+    check_places(after);
+    for (uint64_t t = 0; t < after->triangle_count; t++)
+        assert_true(after->sides[2 * t] > after->sides[2 * t + 1]);
+}
+
+static void test_simplified_noise(void **state)
+{
+    (void)state;
+    random_state random = {19};
+    uint64_t before = 0, left = 0;
+    const int rounds = is_long() ? 4000 : 150;
+    for (int round = 0; round < rounds; round++) {
+        hewn_volume volume = make_random(&random, 1 + (uint32_t)round % 6, 1 + (uint32_t)round % 6);
+        hewn_label_mesh mesh = mesh_labels(&volume, 8), small = mesh_labels(&volume, 8);
+        hewn_error error = {0};
+        hewn_simplify_report report;
+        if (hewn_label_mesh_simplify(&small, &(hewn_simplify_desc){.faces = 1}, &report, &error) != HEWN_OK)
+            fail_msg("%s", error.message);
+        assert_int_equal(report.triangles_before, mesh.triangle_count);
+        assert_int_equal(report.triangles, small.triangle_count);
+        check_simplified(&mesh, &small, true);
+        before += mesh.triangle_count;
+        left += small.triangle_count;
+        hewn_label_mesh_destroy(&mesh);
+        hewn_label_mesh_destroy(&small);
+        hewn_volume_destroy(&volume);
+    }
+    print_message("# %llu triangles became %llu\n", (unsigned long long)before, (unsigned long long)left);
+    assert_true(2 * left < before);
+}
+
+/* A ball of 4 labels, one a quarter, so that a curve runs from pole to pole and four more over the surface. */
+static hewn_volume make_quartered_ball(uint32_t n)
+{
+    hewn_volume volume = make_volume(n, n, n, HEWN_VOXEL_UINT8);
+    const double middle = (n - 1) / 2.0;
+    for (uint32_t k = 0; k < n; k++)
+        for (uint32_t j = 0; j < n; j++)
+            for (uint32_t i = 0; i < n; i++) {
+                const double x = i - middle, y = j - middle, z = k - middle;
+                if (x * x + y * y + z * z < 0.2 * n * n)
+                    ((uint8_t *)volume.memory)[i + (size_t)n * (j + (size_t)n * k)] =
+                        (uint8_t)(1 + (x > 0.1 * y) + 2 * (y > 0));
+            }
+    return volume;
+}
+
+/* Curves between labels become coarser, stay where they were, and do not if they are locked. The error is kept. */
+static void test_simplified_curves(void **state)
+{
+    (void)state;
+    hewn_volume volume = make_quartered_ball(48);
+    hewn_label_mesh mesh = mesh_labels(&volume, 16);
+    for (int kind = 0; kind < 3; kind++) {
+        hewn_label_mesh small = mesh_labels(&volume, 16);
+        const hewn_simplify_desc desc = {
+            .ratio = kind < 2 ? 0.02 : 0, .error = kind < 2 ? 0 : 0.5, .lock_boundary = kind == 1};
+        hewn_simplify_report report;
+        hewn_error error = {0};
+        if (hewn_label_mesh_simplify(&small, &desc, &report, &error) != HEWN_OK)
+            fail_msg("%s", error.message);
+        check_simplified(&mesh, &small, false);
+        assert_int_equal(report.reached, kind != 1);
+        assert_true(kind != 2 || (report.distance <= 0.5 && small.triangle_count < mesh.triangle_count / 10));
+        for (uint32_t n = 1; n <= 4; n++) {
+            const double change = fabs(volume_of(&small, n) / volume_of(&mesh, n) - 1);
+            if (change > (kind == 0 ? 0.03 : 0.1)) /* an error of 0.5 is that of a radius of 21 */
+                fail_msg("kind %d, label %u: the volume changed by %g", kind, n, change);
+        }
+        hewn_label_mesh_destroy(&small);
+    }
+    hewn_label_mesh_destroy(&mesh);
+    hewn_volume_destroy(&volume);
+}
+
+static void test_simplified_threads(void **state)
+{
+    (void)state;
+    hewn_volume volume = make_quartered_ball(72);
+    const int threads = omp_get_max_threads();
+    hewn_label_mesh one = {0};
+    for (int count = 1; count <= 5; count += 2) {
+        omp_set_num_threads(count);
+        hewn_label_mesh mesh = mesh_labels(&volume, 4);
+        assert_int_equal(hewn_label_mesh_simplify(&mesh, &(hewn_simplify_desc){.ratio = 0.1}, NULL, NULL), HEWN_OK);
+        if (count == 1) {
+            one = mesh;
+            continue;
+        }
+        assert_int_equal(one.vertex_count, mesh.vertex_count);
+        assert_int_equal(one.triangle_count, mesh.triangle_count);
+        assert_memory_equal(one.positions, mesh.positions, one.vertex_count * 3 * sizeof(double));
+        assert_memory_equal(one.indices, mesh.indices, one.triangle_count * 3 * sizeof(uint32_t));
+        assert_memory_equal(one.sides, mesh.sides, one.triangle_count * 2 * sizeof(uint16_t));
+        hewn_label_mesh_destroy(&mesh);
+    }
+    omp_set_num_threads(threads);
+    hewn_label_mesh_destroy(&one);
+    hewn_volume_destroy(&volume);
+}
+
+static void test_simplify_refused(void **state)
+{
+    (void)state;
+    hewn_volume volume = make_quartered_ball(12);
+    hewn_label_mesh mesh = mesh_labels(&volume, 0);
+    const uint64_t before = mesh.triangle_count;
+    hewn_error error;
+    const hewn_simplify_desc bad[] = {{0}, {.ratio = 2}, {.error = NAN}, {.faces = 9, .no_self_intersections = true}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(hewn_label_mesh_simplify(&mesh, &bad[i], NULL, &error), HEWN_INVALID_ARGUMENT);
+    assert_int_equal(mesh.triangle_count, before);
+    check_shell(&mesh, 1);
+    hewn_label_mesh_destroy(&mesh);
+    hewn_volume_destroy(&volume);
+}
+
 /* The shells side by side and the shared mesh, as models. */
 static void test_models(void **state)
 {
@@ -419,9 +578,18 @@ static void test_models(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random), cmocka_unit_test(test_all_cells), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_place),  cmocka_unit_test(test_choice),    cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_smooth), cmocka_unit_test(test_models),
+        cmocka_unit_test(test_random),
+        cmocka_unit_test(test_all_cells),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_place),
+        cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_smooth),
+        cmocka_unit_test(test_simplified_noise),
+        cmocka_unit_test(test_simplified_curves),
+        cmocka_unit_test(test_simplified_threads),
+        cmocka_unit_test(test_simplify_refused),
+        cmocka_unit_test(test_models),
     };
     omp_set_num_threads(1); /* volumes are small, and many */
     return cmocka_run_group_tests_name("labels", tests, NULL, NULL);
