@@ -91,8 +91,8 @@ const hewn_command hewn_command_convert = {
              ".glb file has a node a label, .obj and .ply an object; for a file a label name a\n"
              "folder (-o DIR/) or a pattern (-o {name}.stl).\n"
              "\n"
-             "A scene (.lua, .vm), or a mesh where the output is .vdb or .nrrd, is sampled into\n"
-             "a volume, as `hewn voxelize` does.\n",
+             "A scene (.lua, .vm), or a mesh where the output is .vdb or .nrrd, is sampled\n"
+             "into a volume, as `hewn voxelize` does.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
