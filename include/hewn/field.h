@@ -151,6 +151,9 @@ HEWN_API hewn_node hewn_ellipse(hewn_field *field, double x, double y); /* a low
 /* `count` corners (x, y pairs) in order, either way round; where sides cross, what lies within an odd number of loops
  * is inside. */
 HEWN_API hewn_node hewn_polygon(hewn_field *field, const double *points, size_t count);
+/* Several closed polygons at once, `counts[i]` corners of polygon i after those before it: inside is what an odd number
+ * of loops is around, so that one within another is a hole. */
+HEWN_API hewn_node hewn_contours(hewn_field *field, const double *points, const size_t *counts, size_t count);
 /* Corners at `radius` (of the star in turn at `outer` and `inner`), the first one on the y axis. */
 HEWN_API hewn_node hewn_regular_polygon(hewn_field *field, unsigned sides, double radius);
 HEWN_API hewn_node hewn_star(hewn_field *field, unsigned corners, double outer, double inner);
@@ -249,6 +252,27 @@ HEWN_API hewn_node hewn_offset(hewn_field *field, hewn_node shape, double distan
 HEWN_API hewn_node hewn_displace(hewn_field *field, hewn_node shape, hewn_node by);
 /* a where `part` is 0, b where it is 1. */
 HEWN_API hewn_node hewn_morph(hewn_field *field, hewn_node a, hewn_node b, hewn_node part);
+
+/* --- paint --------------------------------------------------------------------------------------------------------
+ * The shape with a colour or a label to it, which go wherever it goes. Of paint over paint the outer one counts. Blends
+ * mix colours (in linear light) as they mix values, and take the label of the nearer part. What a shape without paint
+ * cuts away from a painted one leaves it its paint; a painted one leaves its own on the cut. */
+
+enum { HEWN_LABEL_MOST = 1 << 30 };
+
+/* As on a screen (sRGB), 0 to 1. */
+HEWN_API hewn_node hewn_color(hewn_field *field, hewn_node shape, double red, double green, double blue);
+HEWN_API hewn_node hewn_label(hewn_field *field, hewn_node shape, uint32_t label);
+
+/* Whether anything that the node depends on has a colour, or a label. */
+HEWN_API bool hewn_field_has_colors(const hewn_field *field, hewn_node node);
+HEWN_API bool hewn_field_has_labels(const hewn_field *field, hewn_node node);
+
+/* The paint at points (x, y, z triples), meant for those on the surface: three linear components each to `colors`,
+ * where nothing is painted a light grey, and a label each to `labels`, 0 for none. Either may be NULL. The same for any
+ * number of threads. HEWN_OUT_OF_MEMORY, HEWN_INVALID_ARGUMENT for a node of no field. */
+HEWN_API hewn_result hewn_field_paint(const hewn_field *field, hewn_node node, const double *points, size_t count,
+                                      float *colors, int32_t *labels, hewn_error *error);
 
 /* --- moving ------------------------------------------------------------------------------------------------------ */
 

@@ -9,6 +9,7 @@
 #include "hewn/extract.h"
 #include "hewn/field.h"
 #include "hewn/file_job.h"
+#include "hewn/font.h"
 #include "hewn/heights.h"
 #include "hewn/io.h"
 #include "hewn/job.h"

@@ -61,7 +61,9 @@ typedef struct hewn_write_desc {
      * OFF say SPACE=RAS in their header or first comments, which 3D Slicer reads; GLB in its asset's extras, 3MF in its
      * description. NULL: nothing is said. Static or the caller's. */
     const char *space;
-    bool quads;                    /* of triangles that are paired: write the quads, where the format has polygons */
+    const hewn_channel *channels; /* of triangle buffers: what vertices and faces (as they are written) carry besides */
+    uint32_t channel_count;       /* positions and normals; at most 4 */
+    bool quads;                   /* of triangles that are paired: write the quads, where the format has polygons */
     const hewn_progress *progress; /* or NULL; the stage is "write" */
 } hewn_write_desc;
 

@@ -54,8 +54,11 @@ typedef struct hewn_render_desc {
     uint32_t samples;       /* of a pixel at most, where the picture changes; 0: 4; at most 64. TRACE only */
     hewn_render_method method;
     hewn_axis up;
-    bool no_ground;                /* TRACE only: nothing below, and no shadow on it */
-    float colour[3];               /* of the surface, linear; all 0: a light grey */
+    bool no_ground;            /* TRACE only: nothing below, and no shadow on it */
+    float colour[3];           /* of the surface, linear; all 0: a light grey */
+    const hewn_field *painted; /* or NULL: what has the surface's colours (hewn_color()) where `colour` is all 0, and
+                                  its root; for a renderer of a field mostly that field */
+    hewn_node painted_root;
     const hewn_progress *progress; /* or NULL; the stage is "render" */
 } hewn_render_desc;
 

@@ -8,6 +8,8 @@
 #include "app/number.h"
 #include "app/scene_arguments.h"
 #include "app/simplify_arguments.h"
+#include "app/sweep.h"
+#include "base/alloc.h"
 #include "base/error.h"
 
 static const hewn_option options[] = {
@@ -31,6 +33,7 @@ static const hewn_option options[] = {
      "Look for the surface in BOX = x0,y0,z0,x1,y1,z1. Default: the scene's own bounds, else found from the field."},
     {0, "open", NULL, "Leave the surface open where it leaves the bounds. Default: close it there with a flat cap."},
     {'D', NULL, "NAME=VALUE", "Set a parameter of the scene; `hewn info SCENE` lists them. May be repeated."},
+    HEWN_OPTION_SWEEP,
     {0, "from", "FORMAT", "Read the scene as lua or vm. Default: by its extension; needed where SCENE is `-`."},
     HEWN_OPTION_TO,
     {0, "allow-path", NULL, "Let the scene read files outside its own folder."},
@@ -38,6 +41,9 @@ static const hewn_option options[] = {
      "Compute on this device, an index or a part of a name as `hewn devices` lists them. Default: $HEWN_DEVICE, else "
      "the best."},
     {0, "threads", "N", "Use N threads. Default: one for each processor."},
+    {0, "max-memory", "SIZE",
+     "Make the mesh in parts that take at most SIZE bytes of memory, of the device and the host together; K, M and G "
+     "stand for 2^10, 2^20 and 2^30. The parts wait on disk beside FILE, and the mesh is the same. Default: no limit."},
     {0, "report", "FILE", "Write a report as JSON to FILE; `-` is standard output (not together with -o -)."},
     {'q', "quiet", NULL, "Print errors only: no progress, no summary."},
     {0, "watch", NULL, "Mesh again whenever the scene or a file that it imports changes, until Ctrl-C."},
@@ -50,6 +56,7 @@ typedef struct mesh_request {
     hewn_scene_arguments scene;
     hewn_box bounds;
     hewn_simplify_desc simplify;
+    hewn_sweep sweep;
     bool quiet;
     bool watch;
 } mesh_request;
@@ -124,15 +131,23 @@ static hewn_result read_output(const hewn_arguments *arguments, mesh_request *re
     request->watch = hewn_arguments_has(arguments, "watch");
     if (request->watch && (is_dash(desc->output) || is_dash(desc->scene.path)))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--watch needs files, not standard input or output");
+    HEWN_TRY(hewn_sweep_read(arguments, &request->scene, &request->sweep, error));
+    if (request->sweep.count > 0 && (is_dash(desc->output) || (desc->report && is_dash(desc->report))))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--sweep needs files, not standard output");
+    if (request->sweep.count > 0 && request->watch)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--sweep and --watch exclude each other");
     return HEWN_OK;
 }
 
 static hewn_result read_device(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
 {
     const char *threads = hewn_arguments_value(arguments, "threads");
+    const char *memory = hewn_arguments_value(arguments, "max-memory");
     const char *validation = getenv("HEWN_VALIDATION");
     request->desc.device = hewn_arguments_value(arguments, "device");
     request->desc.validation = validation && validation[0] && strcmp(validation, "0") != 0;
+    if (memory)
+        HEWN_TRY(hewn_bytes_parse(memory, "--max-memory", &request->desc.max_memory, error));
     if (!threads)
         return HEWN_OK;
     HEWN_TRY(hewn_count_parse(threads, "--threads", 1, &request->desc.threads, error));
@@ -280,6 +295,29 @@ static hewn_result mesh_once(const mesh_request *request, double began, hewn_wat
     return result;
 }
 
+/* Meshes once for each value of the parameter; the device and what was compiled for it are kept between them. */
+static hewn_result mesh_sweep(mesh_request *request, hewn_error *error)
+{
+    hewn_sweep *sweep = &request->sweep;
+    const char *output = request->desc.output, *report = request->desc.report;
+    hewn_mesh_kept *kept = NULL;
+    hewn_result result = hewn_mesh_kept_create(&kept, error);
+    for (uint32_t step = 0; result == HEWN_OK && step < sweep->count; step++) {
+        char *mesh = hewn_sweep_path(sweep, output, step);
+        char *json = report ? hewn_sweep_path(sweep, report, step) : NULL;
+        hewn_sweep_set(sweep, step, &request->desc.scene);
+        request->desc.output = mesh;
+        request->desc.report = json;
+        result = mesh && (json || !report) ? mesh_once(request, step == 0 ? hewn_started() : 0, NULL, kept, error)
+                                           : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory");
+        hewn_free(mesh);
+        hewn_free(json);
+        result = hewn_sweep_blame(sweep, step, result, error);
+    }
+    hewn_mesh_kept_destroy(&kept);
+    return result;
+}
+
 /* Whether it makes sense to wait for a better scene after this. */
 static bool is_end(hewn_result result)
 {
@@ -324,7 +362,9 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
             result = hewn_watch_create(&watch, &error);
         if (result == HEWN_OK && request.watch)
             result = hewn_mesh_kept_create(&kept, &error);
-        if (result == HEWN_OK)
+        if (result == HEWN_OK && request.sweep.count > 0)
+            result = mesh_sweep(&request, &error);
+        else if (result == HEWN_OK)
             result = watch ? watch_scene(&request, watch, kept, &error)
                            : mesh_once(&request, hewn_started(), NULL, NULL, &error);
         hewn_mesh_kept_destroy(&kept);
@@ -332,6 +372,7 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
         if (result != HEWN_OK)
             code = hewn_report_misuse(command, &error);
     }
+    hewn_sweep_destroy(&request.sweep);
     hewn_scene_arguments_destroy(&request.scene);
     return code;
 }
@@ -349,6 +390,7 @@ const hewn_command hewn_command_mesh = {
     .after = "Examples:\n"
              "  hewn mesh assets/scenes/bracket.lua -o bracket.glb --res 256\n"
              "  hewn mesh assets/scenes/menger.lua -D L=4 -o sponge.stl --report sponge.json\n"
+             "  hewn mesh assets/scenes/vase.lua --sweep twist=0:120:30 -o vase.ply\n"
              "  hewn mesh - --from vm -o - --to ply < model.vm > model.ply\n",
     .run = run,
 };

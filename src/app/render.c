@@ -7,6 +7,8 @@
 #include "app/file_arguments.h"
 #include "app/number.h"
 #include "app/scene_arguments.h"
+#include "app/sweep.h"
+#include "base/alloc.h"
 #include "base/error.h"
 
 typedef struct render_request {
@@ -15,6 +17,7 @@ typedef struct render_request {
     hewn_camera camera;
     hewn_box bounds;
     hewn_axis up;
+    hewn_sweep sweep;
     bool quiet;
 } render_request;
 
@@ -38,6 +41,7 @@ static const hewn_option options[] = {
      "The part of space to show, x0,y0,z0,x1,y1,z1 in scene units; with --2d x0,y0,x1,y1 or, for the plane at z, "
      "x0,y0,z,x1,y1,z. Default: the scene's own, or found from its field."},
     {'D', NULL, "NAME=VALUE", "Set a parameter of the scene. May be repeated."},
+    HEWN_OPTION_SWEEP,
     {0, "from", "FORMAT",
      "Read the file as lua or vm, or as a mesh in glb, gltf, obj, ply, stl or off. Default: by its "
      "extension; needed where it is `-`."},
@@ -153,6 +157,14 @@ static hewn_result read_request(const hewn_arguments *arguments, render_request 
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "where should the picture go? Give -o FILE");
     if (!request->desc.output[0])
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
+    HEWN_TRY(hewn_sweep_read(arguments, &request->scene, &request->sweep, error));
+    bool mesh =
+        request->desc.mesh != HEWN_MESH_UNKNOWN ||
+        (!hewn_arguments_has(arguments, "from") && hewn_mesh_format_of(request->scene.desc.path) != HEWN_MESH_UNKNOWN);
+    if (request->sweep.count > 0 && mesh)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--sweep sets a parameter of a scene; a mesh has none");
+    if (request->sweep.count > 0 && strcmp(request->desc.output, "-") == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--sweep needs files, not standard output");
     if (strcmp(request->desc.output, "-") == 0 && isatty(STDOUT_FILENO))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
                          "standard output is a terminal, and PNG is binary; send it to a file or a pipe");
@@ -192,25 +204,51 @@ static void print_summary(const render_request *request, const hewn_render_repor
                 (unsigned long long)stats->ran_out);
 }
 
+static hewn_result render_once(const render_request *request, double began, hewn_error *error)
+{
+    hewn_render_report report = {0};
+    hewn_render_job_desc desc = request->desc;
+    hewn_progress progress = hewn_progress_begin(request->quiet);
+    desc.progress = &progress;
+    desc.began = began;
+    hewn_result result = hewn_render_file(&desc, &report, error);
+    hewn_progress_end();
+    if (result == HEWN_OK && !request->quiet)
+        print_summary(request, &report);
+    if (result == HEWN_OK && report.validation_messages > 0)
+        result = hewn_fail(error, HEWN_DEVICE_LOST, "the validation layer gave %llu messages",
+                           (unsigned long long)report.validation_messages);
+    return result;
+}
+
+static hewn_result render_sweep(render_request *request, hewn_error *error)
+{
+    hewn_sweep *sweep = &request->sweep;
+    const char *output = request->desc.output;
+    hewn_result result = HEWN_OK;
+    for (uint32_t step = 0; result == HEWN_OK && step < sweep->count; step++) {
+        char *picture = hewn_sweep_path(sweep, output, step);
+        hewn_sweep_set(sweep, step, &request->desc.scene);
+        request->desc.output = picture;
+        result = picture ? render_once(request, step == 0 ? hewn_started() : 0, error)
+                         : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory");
+        hewn_free(picture);
+        result = hewn_sweep_blame(sweep, step, result, error);
+    }
+    return result;
+}
+
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
     render_request request = {0};
     hewn_error error = {0};
-    hewn_render_report report = {0};
     hewn_result result = read_request(arguments, &request, &error);
     if (result == HEWN_OK) {
         hewn_signals_catch();
-        hewn_progress progress = hewn_progress_begin(request.quiet);
-        request.desc.progress = &progress;
-        request.desc.began = hewn_started();
-        result = hewn_render_file(&request.desc, &report, &error);
-        hewn_progress_end();
+        result =
+            request.sweep.count > 0 ? render_sweep(&request, &error) : render_once(&request, hewn_started(), &error);
     }
-    if (result == HEWN_OK && !request.quiet)
-        print_summary(&request, &report);
-    if (result == HEWN_OK && report.validation_messages > 0)
-        result = hewn_fail(&error, HEWN_DEVICE_LOST, "the validation layer gave %llu messages",
-                           (unsigned long long)report.validation_messages);
+    hewn_sweep_destroy(&request.sweep);
     hewn_scene_arguments_destroy(&request.scene);
     return result == HEWN_OK ? 0 : hewn_report_misuse(command, &error);
 }

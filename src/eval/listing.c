@@ -156,8 +156,13 @@ static hewn_result fill(hewn_listing *listing, const hewn_field *field, const ui
     listing->parameters = hewn_alloc(count, PARAMETERS_MAX * sizeof *listing->parameters);
     bool enough = places && listing->steps && listing->parameters;
     for (size_t i = 0; enough && i < count; i++) {
-        places[ids[i]] = (uint32_t)i;
-        add_step(listing, hewn_field_node(field, ids[i]), places);
+        const hewn_node_data *node = hewn_field_node(field, ids[i]);
+        if (node->op == HEWN_OP_PAINT) {
+            places[ids[i]] = places[node->operand[0]];
+            continue;
+        }
+        places[ids[i]] = (uint32_t)listing->count;
+        add_step(listing, node, places);
     }
     hewn_free(places);
     return enough ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %zu operations", count);

@@ -8,6 +8,7 @@
 static hewn_interval unary(const hewn_node_data *node, hewn_interval a)
 {
     switch (node->op) {
+    case HEWN_OP_PAINT: return a;
     case HEWN_OP_NEG: return hewn_interval_neg(a);
     case HEWN_OP_ABS: return hewn_interval_abs(a);
     case HEWN_OP_SQRT: return hewn_interval_sqrt(a);

@@ -75,6 +75,8 @@ CALL(shell, F(0), V(1))
 CALL(offset, F(0), V(1))
 CALL(displace, F(0), F(1))
 CALL(morph, F(0), F(1), F(2))
+CALL(color, F(0), V(1), V(2), V(3))
+CALL(label, F(0), (uint32_t)V(1))
 CALL(translate, F(0), V(1), V(2), V(3))
 CALL(mirror, F(0), (int)V(1))
 CALL(symmetric, F(0), (int)V(1))
@@ -158,6 +160,10 @@ static hewn_node call_scale(hewn_field *field, const hewn_argument *v)
 #define CURVES                                                                                                         \
     {                                                                                                                  \
         "curves", HEWN_ARGUMENT_CURVES, 0, 0, false, 0                                                                 \
+    }
+#define PART(name)                                                                                                     \
+    {                                                                                                                  \
+        name, HEWN_ARGUMENT_PART, 0, 0, false, 0                                                                       \
     }
 #define SEED                                                                                                           \
     {                                                                                                                  \
@@ -340,6 +346,12 @@ const hewn_function hewn_functions[] = {
      "`a` where `part` (a field or a number) is 0, `b` where it is 1, a mix between",
      {FIELD("a"), FIELD("b"), OPERAND("part")}, call_morph},
 
+    {"color", HEWN_SECTION_PAINT, HEWN_EXACT, 1, 0, "color(a, red, green, blue)",
+     "the shape in a colour, as on a screen, each from 0 to 1; `color(a, \"#rrggbb\")` too",
+     {FIELD("a"), PART("red"), PART("green"), PART("blue")}, call_color},
+    {"label", HEWN_SECTION_PAINT, HEWN_EXACT, 1, 0, NULL,
+     "the shape with a number, which the mesh's faces carry", {FIELD("a"), WHOLE("label", 0, HEWN_LABEL_MOST)}, call_label},
+
     {"translate", HEWN_SECTION_MOVING, HEWN_EXACT, 1, 0, "translate(a, x, y, z)", "moved by that much",
      {FIELD("a"), NUMBER("x"), NUMBER("y"), NUMBER("z")}, call_translate},
     {"move", HEWN_SECTION_MOVING, HEWN_EXACT, 1, 0, "move(a, x, y, z)", "another name of `translate`", {{0}}, NULL},
@@ -404,9 +416,9 @@ int hewn_function_arguments(const hewn_function *function, int *needed)
 
 const char *hewn_section_name(hewn_section section)
 {
-    static const char *const names[HEWN_SECTIONS] = {"solids",       "flat shapes", "into space", "periodic surfaces",
-                                                     "noise",        "files",       "combining",   "changing",   "moving",
-                                                     "bending space"};
+    static const char *const names[HEWN_SECTIONS] = {"solids", "flat shapes", "into space",   "periodic surfaces",
+                                                     "noise",  "files",       "combining",    "changing",
+                                                     "paint",  "moving",      "bending space"};
     return names[section];
 }
 

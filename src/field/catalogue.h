@@ -13,6 +13,7 @@ typedef enum hewn_argument_kind {
     HEWN_ARGUMENT_NUMBER,
     HEWN_ARGUMENT_POSITIVE,
     HEWN_ARGUMENT_NOT_NEGATIVE,
+    HEWN_ARGUMENT_PART,  /* from 0 to 1 */
     HEWN_ARGUMENT_ANGLE, /* degrees for people, radians in a hewn_argument */
     HEWN_ARGUMENT_WHOLE, /* from `least` to `most` */
     HEWN_ARGUMENT_AXIS,
@@ -56,6 +57,7 @@ typedef enum hewn_section {
     HEWN_SECTION_FILES,
     HEWN_SECTION_COMBINING,
     HEWN_SECTION_CHANGING,
+    HEWN_SECTION_PAINT,
     HEWN_SECTION_MOVING,
     HEWN_SECTION_BENDING,
     HEWN_SECTIONS

@@ -87,6 +87,36 @@ static bool points_are_fine(hewn_field *f, const char *name, const double *point
     return true;
 }
 
+/* Goes on with another outline, elsewhere. */
+static void chain_jump(chain *own, double x, double y)
+{
+    own->first[0] = own->at[0] = x;
+    own->first[1] = own->at[1] = y;
+}
+
+hewn_node hewn_contours(hewn_field *f, const double *points, const size_t *counts, size_t count)
+{
+    size_t all = 0;
+    for (size_t i = 0; counts && i < count; i++) {
+        if (counts[i] < 3 || counts[i] > HEWN_OUTLINE_MOST - all)
+            return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "contours: contour %zu has %zu points", i + 1,
+                                     counts[i]);
+        all += counts[i];
+    }
+    if (!counts || count == 0)
+        return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "contours: there are none");
+    if (!points_are_fine(f, "contours", points, all))
+        return HEWN_NODE_NONE;
+    chain own = chain_from(f, points[0], points[1]);
+    for (size_t i = 0; i < count; points += 2 * counts[i++]) {
+        chain_jump(&own, points[0], points[1]);
+        for (size_t k = 1; k < counts[i]; k++)
+            chain_to(&own, points[2 * k], points[2 * k + 1]);
+        chain_to(&own, points[0], points[1]);
+    }
+    return chain_closed(&own, "contours");
+}
+
 hewn_node hewn_polygon(hewn_field *f, const double *points, size_t count)
 {
     if (!points_are_fine(f, "polygon", points, count))

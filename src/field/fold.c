@@ -114,6 +114,13 @@ static bool fold_unary(const hewn_field *field, hewn_node_data *data, uint32_t *
     case HEWN_OP_FLOOR:
     case HEWN_OP_CEIL:
     case HEWN_OP_ROUND: *existing = a; return is_whole(inner->op);
+    case HEWN_OP_PAINT: /* the outer paint covers the inner one */
+        for (int i = 0; i < 4 && inner->op == HEWN_OP_PAINT; i++)
+            if (data->parameter[i] < 0)
+                data->parameter[i] = inner->parameter[i];
+        if (inner->op == HEWN_OP_PAINT)
+            data->operand[0] = inner->operand[0];
+        return false;
     default: return false;
     }
 }

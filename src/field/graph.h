@@ -57,6 +57,7 @@
     op(OUTLINE, outline, 3, 1)                     /* the largest size of a coordinate in the chain */ \
     op(SAMPLED, sampled, 3, 0)                     /* of its samples, at a place counted in cells from their middle */ \
     op(ZIGZAG, zigzag, 1, 1)                       /* period: the distance from the nearest of its multiples */ \
+    op(PAINT, paint, 1, 4)                         /* red, green, blue (linear) or -1, label or -1: see below */ \
     op(BLEND_QUADRATIC, blend_quadratic, 2, 1)     /* size */ \
     op(BLEND_CUBIC, blend_cubic, 2, 1)             /* size */ \
     op(BLEND_CIRCULAR, blend_circular, 2, 1)       /* size: the fillet's radius, and where |a-b| ends */ \
@@ -70,6 +71,9 @@
  * gradients the direction away from the nearest edge. Only the outline is a field like others; no builder hands out an
  * edge. */
 #define HEWN_OUTLINE_START 1e29
+
+/* Paint has its operand's value. What evaluates fields passes it over, so that a field with paint and one without are the
+ * same code; paint.c evaluates what it says. */
 
 /* The blends, with d = |a-b|, k the parameter; all are min(a, b) where not d < k, and never give NaN but for NaN:
  *   quadratic    min(a, b) - h² / (4 k),   h = k - d

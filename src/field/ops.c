@@ -59,6 +59,9 @@ const char *hewn_op_complaint(hewn_op op, const double *p)
         return p[0] >= 0 && p[0] < 0x1p24 && p[0] == floor(p[0]) ? NULL
                                                                  : "its seed must be a whole number from 0 to 16777215";
     case HEWN_OP_EDGE: return p[0] != p[2] || p[1] != p[3] ? NULL : "its ends must not be one point";
+    case HEWN_OP_PAINT:
+        return (p[0] >= 0 && p[1] >= 0 && p[2] >= 0) || (p[0] == -1 && p[3] >= 0) ? NULL
+                                                                                  : "it has neither colour nor label";
     case HEWN_OP_OUTLINE:
     case HEWN_OP_ZIGZAG:
     case HEWN_OP_BLEND_QUADRATIC:

@@ -168,6 +168,7 @@ double hewn_op_point(const hewn_node_data *node, const double in[3])
     double a = in[0], b = in[1];
     switch (node->op) {
     case HEWN_OP_CONSTANT: return p[0];
+    case HEWN_OP_PAINT: return a;
     case HEWN_OP_NEG: return -a;
     case HEWN_OP_ABS: return fabs(a);
     case HEWN_OP_SQRT: return sqrt(a);

@@ -16,17 +16,23 @@ hewn_result hewn_tape_create(hewn_tape *tape, const hewn_field *field, hewn_node
         hewn_free(position);
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory evaluating a field of %zu nodes", count);
     }
+    size_t made = 0;
     for (size_t i = 0; i < count; i++) {
         const hewn_node_data *node = &field->nodes[ids[i]];
-        position[ids[i]] = (uint32_t)i;
-        steps[i] = (hewn_step){node, {HEWN_NO_ID, HEWN_NO_ID, HEWN_NO_ID}};
+        if (node->op == HEWN_OP_PAINT) {
+            position[ids[i]] = position[node->operand[0]];
+            continue;
+        }
+        position[ids[i]] = (uint32_t)made;
+        hewn_step *step = &steps[made++];
+        *step = (hewn_step){node, {HEWN_NO_ID, HEWN_NO_ID, HEWN_NO_ID}};
         for (int k = 0; k < hewn_op_infos[node->op].operands; k++)
-            steps[i].in[k] = position[node->operand[k]];
+            step->in[k] = position[node->operand[k]];
     }
     hewn_free(ids);
     hewn_free(position);
     tape->steps = steps;
-    tape->count = count;
+    tape->count = made;
     return HEWN_OK;
 }
 

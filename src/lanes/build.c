@@ -204,6 +204,10 @@ static uint32_t fill(builder *b, const hewn_field *field, const uint32_t *ids, s
     for (size_t i = 0; i < count; i++) {
         const hewn_node_data *node = hewn_field_node(field, ids[i]);
         uint32_t in[HEWN_MAX_OPERANDS] = {HEWN_NO_STEP, HEWN_NO_STEP, HEWN_NO_STEP};
+        if (node->op == HEWN_OP_PAINT) {
+            last = places[ids[i]] = places[node->operand[0]];
+            continue;
+        }
         for (int k = 0; k < hewn_op_infos[node->op].operands; k++)
             in[k] = places[node->operand[k]];
         last = places[ids[i]] = add_node(b, node, in);

@@ -158,6 +158,10 @@ static hewn_result render_surface(render_job *job, hewn_error *error)
     render.width = job->report->width;
     render.height = job->report->height;
     render.progress = job->desc->progress;
+    if (job->scene) {
+        render.painted = hewn_scene_field(job->scene);
+        render.painted_root = hewn_field_root(render.painted);
+    }
     HEWN_TRY(hewn_render(job->renderer, &render, &job->picture, &job->report->stats, error));
     job->report->lo = job->picture.lo;
     job->report->hi = job->picture.hi;

@@ -156,10 +156,16 @@ static void print_request(hewn_json *json, const hewn_report *report)
     hewn_json_string(json, "method", hewn_method_name(report->method));
     hewn_json_bool(json, "open", report->open);
     hewn_json_bool(json, "quads", report->quads);
+    hewn_json_bool(json, "colors", report->colors);
+    hewn_json_bool(json, "labels", report->labels);
     if (report->adaptive > 0)
         hewn_json_number(json, "adaptive", report->adaptive);
     else
         hewn_json_string(json, "adaptive", NULL);
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "max_memory", report->max_memory);
+    else
+        hewn_json_string(json, "max_memory", NULL);
     if (report->resolution)
         hewn_json_unsigned(json, "resolution", report->resolution);
     else
@@ -220,7 +226,11 @@ static void print_result(hewn_json *json, const hewn_report *report)
     hewn_json_object(json, "peak");
     hewn_json_unsigned(json, "host_bytes", report->peak_host_bytes);
     hewn_json_unsigned(json, "device_bytes", report->peak_device_bytes);
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "counted_bytes", report->extraction.peak_memory);
     hewn_json_end_object(json);
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "parts", report->extraction.parts);
     hewn_json_object(json, "counts");
     hewn_json_unsigned(json, "vertices", report->vertices);
     hewn_json_unsigned(json, "faces", report->faces);

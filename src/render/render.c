@@ -30,6 +30,8 @@ typedef struct rendering {
         hewn_ray *rays;
         hewn_met *met;
         uint32_t *pixels;
+        double *points; /* of the surface, and its colours there; only where it is painted */
+        float *colours;
         size_t count;
     } batch;
     uint64_t done, wanted; /* pixels */
@@ -136,7 +138,26 @@ static hewn_result find_ground(rendering *r, hewn_error *error)
 /* --- pixels ---------------------------------------------------------------------------------------------------------
  */
 
-static void take_pixel(rendering *r, const hewn_met *met, uint32_t pixel, bool first)
+/* What the surface is painted with at the batch's hits, one after another. */
+static hewn_result find_colours(rendering *r, hewn_error *error)
+{
+    struct batch *batch = &r->batch;
+    size_t count = 0;
+    if (!batch->colours)
+        return HEWN_OK;
+    for (size_t i = 0; i < batch->count; i++) {
+        const hewn_ray *ray = &batch->rays[i];
+        if (batch->met[i].what != HEWN_MET_SURFACE)
+            continue;
+        for (int k = 0; k < 3; k++)
+            batch->points[3 * count + (size_t)k] =
+                (double)ray->from[k] + (double)batch->met[i].t * (double)ray->along[k];
+        count++;
+    }
+    return hewn_field_paint(r->desc->painted, r->desc->painted_root, batch->points, count, batch->colours, NULL, error);
+}
+
+static void take_pixel(rendering *r, const hewn_met *met, const float surface[3], uint32_t pixel, bool first)
 {
     float *values = r->picture->values;
     uint32_t x = pixel % r->lens.width, y = pixel / r->lens.width;
@@ -152,7 +173,7 @@ static void take_pixel(rendering *r, const hewn_met *met, uint32_t pixel, bool f
         values[pixel] = seen ? (float)((double)met->t * facing) : NAN;
     } else {
         float colour[3];
-        hewn_met_colour(met, &r->stage, r->surface, colour);
+        hewn_met_colour(met, &r->stage, surface, colour);
         for (int i = 0; i < 3; i++)
             values[3 * (size_t)pixel + (size_t)i] = (first ? 0 : values[3 * (size_t)pixel + (size_t)i]) + colour[i];
         if (first && r->first)
@@ -169,9 +190,13 @@ static hewn_result flush(rendering *r, bool first, hewn_error *error)
     double began = hewn_clock_now();
     HEWN_TRY(tracer->trace(tracer->self, &r->stage, batch->rays, batch->count, batch->met, error));
     double traced = hewn_clock_now();
+    HEWN_TRY(find_colours(r, error));
+    const float *colour = batch->colours;
     for (size_t i = 0; i < batch->count; i++) {
-        take_pixel(r, &batch->met[i], batch->pixels[i], first);
-        r->stats->hits += batch->met[i].what == HEWN_MET_SURFACE;
+        bool hit = batch->met[i].what == HEWN_MET_SURFACE;
+        take_pixel(r, &batch->met[i], hit && colour ? colour : r->surface, batch->pixels[i], first);
+        colour += hit && colour ? 3 : 0;
+        r->stats->hits += hit;
         r->stats->ran_out += batch->met[i].ran_out;
     }
     r->stats->rays += batch->count;
@@ -277,8 +302,12 @@ static hewn_result begin(rendering *r, hewn_error *error)
     r->batch.rays = hewn_alloc(BATCH, sizeof *r->batch.rays);
     r->batch.met = hewn_alloc(BATCH, sizeof *r->batch.met);
     r->batch.pixels = hewn_alloc(BATCH, sizeof *r->batch.pixels);
+    bool painted = lit && !given && desc->painted && hewn_field_has_colors(desc->painted, desc->painted_root);
+    r->batch.points = painted ? hewn_alloc(BATCH, 3 * sizeof *r->batch.points) : NULL;
+    r->batch.colours = painted ? hewn_alloc(BATCH, 3 * sizeof *r->batch.colours) : NULL;
     r->first = r->samples > 1 ? hewn_alloc(pixels, sizeof *r->first) : NULL;
-    if (!r->picture->values || !r->batch.rays || !r->batch.met || !r->batch.pixels || (r->samples > 1 && !r->first))
+    if (!r->picture->values || !r->batch.rays || !r->batch.met || !r->batch.pixels ||
+        (painted && (!r->batch.points || !r->batch.colours)) || (r->samples > 1 && !r->first))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a picture of %u x %u pixels", width, height);
     return HEWN_OK;
 }
@@ -322,6 +351,8 @@ hewn_result hewn_render(hewn_renderer *renderer, const hewn_render_desc *desc, h
     hewn_free(r.batch.rays);
     hewn_free(r.batch.met);
     hewn_free(r.batch.pixels);
+    hewn_free(r.batch.points);
+    hewn_free(r.batch.colours);
     hewn_free(r.first);
     if (result != HEWN_OK)
         hewn_picture_destroy(out);

@@ -187,8 +187,10 @@ hewn_result hewn_steepness_bound(const hewn_field *field, hewn_node root_node, c
     size_t count = 0;
     HEWN_TRY(hewn_field_live_nodes(field, root_node, &ids, &count, error));
     steep *known = hewn_alloc((size_t)root_node.id + 1, sizeof *known);
-    for (size_t i = 0; known && i < count; i++)
-        known[ids[i]] = find(field, hewn_field_node(field, ids[i]), box, known);
+    for (size_t i = 0; known && i < count; i++) {
+        const hewn_node_data *node = hewn_field_node(field, ids[i]);
+        known[ids[i]] = node->op == HEWN_OP_PAINT ? known[node->operand[0]] : find(field, node, box, known);
+    }
     if (known)
         *out = known[root_node.id].bound;
     bool enough = known != NULL;

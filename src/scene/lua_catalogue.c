@@ -114,6 +114,7 @@ static void read_argument(lua_State *L, int argument, const hewn_function *funct
     case HEWN_ARGUMENT_OPERAND: out->node = hewn_lua_operand(L, argument, name); break;
     case HEWN_ARGUMENT_NUMBER: out->number = hewn_lua_number(L, argument, name); break;
     case HEWN_ARGUMENT_POSITIVE: out->number = hewn_lua_positive(L, argument, name); break;
+    case HEWN_ARGUMENT_PART: out->number = hewn_lua_part(L, argument, name); break;
     case HEWN_ARGUMENT_NOT_NEGATIVE: out->number = not_negative(L, argument, name); break;
     case HEWN_ARGUMENT_ANGLE: out->number = hewn_lua_number(L, argument, name) * degree; break;
     case HEWN_ARGUMENT_WHOLE: out->number = whole(L, argument, function, info); break;

@@ -51,6 +51,14 @@ double hewn_lua_positive(lua_State *L, int argument, const char *name)
     return value;
 }
 
+double hewn_lua_part(lua_State *L, int argument, const char *name)
+{
+    double value = lua_tonumber(L, argument);
+    if (lua_type(L, argument) != LUA_TNUMBER || !(value >= 0) || !(value <= 1))
+        hewn_lua_argument_error(L, argument, name, "a number from 0 to 1");
+    return value;
+}
+
 const char *hewn_lua_string(lua_State *L, int argument, const char *name)
 {
     size_t length = 0;

@@ -28,11 +28,12 @@ static const char *calling_file(lua_State *L)
     return hewn_lua_of(L)->scene->sources[0].path;
 }
 
-void hewn_lua_resolve(lua_State *L, const char *function, const char *name)
+void hewn_lua_find_file(lua_State *L, const char *function, const char *name)
 {
     const hewn_scene *scene = hewn_lua_of(L)->scene;
     if (name[0] == '/' && scene->root)
-        luaL_error(L, "%s: '%s' is an absolute path; a scene's files stay in its folder", function, name);
+        luaL_error(L, "%s: '%s' is an absolute path; a scene's files stay in its folder (--allow-path lets it)",
+                   function, name);
     char *path = hewn_path_beside(calling_file(L), name);
     char *real = path ? hewn_path_real(path) : NULL;
     int code = errno;
@@ -66,13 +67,13 @@ static bool ends_in_vm(const char *path)
     return length >= 3 && strcasecmp(path + length - 3, ".vm") == 0;
 }
 
-hewn_result hewn_lua_add_source(hewn_scene *scene, const char *path, const char *real, hewn_error *reason)
+hewn_result hewn_lua_note_file(hewn_scene *scene, const char *path, const char *real, hewn_error *reason)
 {
     for (size_t i = 0; i < scene->source_count; i++)
         if (scene->sources[i].real && strcmp(scene->sources[i].real, real) == 0)
             return HEWN_OK;
     if (scene->source_count >= FILE_LIMIT)
-        return hewn_fail(reason, HEWN_BAD_INPUT, "a scene can import at most %d files", (int)FILE_LIMIT);
+        return hewn_fail(reason, HEWN_BAD_INPUT, "a scene can use at most %d files", (int)FILE_LIMIT);
     return hewn_scene_add_source(scene, hewn_strdup(path), hewn_strdup(real), reason);
 }
 
@@ -97,7 +98,7 @@ static void run_file(lua_State *L, const char *name, const char *path, const cha
     hewn_error reason = {0};
     char *text = NULL;
     size_t length = 0;
-    if (hewn_lua_add_source(scene, path, real, &reason) != HEWN_OK ||
+    if (hewn_lua_note_file(scene, path, real, &reason) != HEWN_OK ||
         hewn_file_read(real, HEWN_SCENE_FILE_LIMIT, &text, &length, &reason) != HEWN_OK)
         luaL_error(L, "import: '%s': %s", name, reason.message);
     if (ends_in_vm(path)) {
@@ -139,7 +140,7 @@ static int import(lua_State *L)
 {
     hewn_lua *lua = hewn_lua_of(L);
     hewn_lua_check_count(L, "import", 1, 1);
-    hewn_lua_resolve(L, "import", hewn_lua_string(L, 1, "import"));
+    hewn_lua_find_file(L, "import", hewn_lua_string(L, 1, "import"));
     luaL_getsubtable(L, LUA_REGISTRYINDEX, results_key);
     lua_pushvalue(L, 3);
     int type = lua_rawget(L, 4);

@@ -156,8 +156,10 @@ static void open_sandbox(lua_State *L)
     hewn_lua_open_catalogue(L, methods);
     hewn_lua_open_combining(L, methods);
     hewn_lua_open_moving(L, methods);
+    hewn_lua_open_paint(L, methods);
     hewn_lua_open_scene(L);
     hewn_lua_open_import(L);
+    hewn_lua_open_text(L);
     hewn_lua_open_sampled(L);
     lua_settop(L, 1);
 }

@@ -131,7 +131,7 @@ static hewn_result add(hewn_scene *scene, hewn_scene_sampling *wanted, const cha
     uint64_t left = BYTES_LIMIT - bytes;
     if (wanted->how.mesh.memory_limit > left && wanted->report.is_mesh)
         wanted->how.mesh.memory_limit = left;
-    HEWN_TRY(hewn_lua_add_source(scene, path, real, reason));
+    HEWN_TRY(hewn_lua_note_file(scene, path, real, reason));
     void *items = scene->samplings;
     HEWN_TRY(
         hewn_reserve(&items, &scene->sampling_capacity, scene->sampling_count + 1, sizeof *scene->samplings, reason));
@@ -153,7 +153,7 @@ static const hewn_scene_sampling *sample(lua_State *L, const char *name, hewn_sc
     const char *file = hewn_lua_string(L, 1, name);
     if (!scene->reader)
         luaL_error(L, "%s: this program reads no such files for a scene", name);
-    hewn_lua_resolve(L, name, file);
+    hewn_lua_find_file(L, name, file);
     const char *path = lua_tostring(L, -2), *real = lua_tostring(L, -1);
     for (size_t i = 0; i < scene->sampling_count; i++)
         if (same_request(&scene->samplings[i], wanted, real))

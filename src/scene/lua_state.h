@@ -97,20 +97,22 @@ void hewn_lua_open_arithmetic(lua_State *L, int methods);
 void hewn_lua_open_catalogue(lua_State *L, int methods);
 void hewn_lua_open_shapes(lua_State *L);
 void hewn_lua_open_combining(lua_State *L, int methods);
+void hewn_lua_open_paint(lua_State *L, int methods);
 void hewn_lua_open_moving(lua_State *L, int methods);
 void hewn_lua_open_scene(lua_State *L);
 void hewn_lua_open_import(lua_State *L);
+void hewn_lua_open_text(lua_State *L);
 void hewn_lua_open_sampled(lua_State *L);
 
-/* --- lua_import.c: files -------------------------------------------------------------------------------------------
- */
+/* --- lua_import.c: files ------------------------------------------------------------------------------------------ */
 
-/* Finds a file that `function` is asked for: pushes its path as messages show it and its real path, or raises why that
- * is not to be had. */
-void hewn_lua_resolve(lua_State *L, const char *function, const char *name);
+/* Finds a file that a script names, beside the file that says it: pushes its path as messages show it and its real
+ * path. Raises an error, which begins with the name of the function that asks, where it is not to be found or lies where
+ * the scene may not reach. */
+void hewn_lua_find_file(lua_State *L, const char *function, const char *name);
 
-/* Notes the file among the scene's, once. */
-hewn_result hewn_lua_add_source(hewn_scene *scene, const char *path, const char *real, hewn_error *reason);
+/* Notes a file among the scene's, once. */
+hewn_result hewn_lua_note_file(hewn_scene *scene, const char *path, const char *real, hewn_error *reason);
 
 /* --- lua_field.c: values and arguments --------------------------------------------------------------------------- */
 
@@ -122,6 +124,7 @@ void hewn_lua_check_count(lua_State *L, const char *name, int least, int most);
 
 double hewn_lua_number(lua_State *L, int argument, const char *name);      /* finite */
 double hewn_lua_positive(lua_State *L, int argument, const char *name);    /* finite, above 0 */
+double hewn_lua_part(lua_State *L, int argument, const char *name);        /* from 0 to 1 */
 const char *hewn_lua_string(lua_State *L, int argument, const char *name); /* without NUL inside */
 bool hewn_lua_is_field(lua_State *L, int index);
 hewn_node hewn_lua_field(lua_State *L, int argument, const char *name);   /* a field only */

@@ -58,6 +58,8 @@ static void test_report_has_all_names(void **state)
         "method",
         "open",
         "quads",
+        "colors",
+        "labels",
         "adaptive",
         "resolution",
         "threads",

@@ -50,6 +50,7 @@ static inline double random_number(random_state *random, const char *function, c
     switch (info->kind) {
     case HEWN_ARGUMENT_POSITIVE: return random_between(random, 0.5, 0.8);
     case HEWN_ARGUMENT_NOT_NEGATIVE: return random_between(random, 0.6, 1.2);
+    case HEWN_ARGUMENT_PART: return random_between(random, 0, 1);
     case HEWN_ARGUMENT_ANGLE: return random_between(random, -1, 1);
     case HEWN_ARGUMENT_WHOLE: return floor(fmin(random_between(random, info->least, info->least + 5), info->most));
     case HEWN_ARGUMENT_AXIS: return random_below(random, 3);

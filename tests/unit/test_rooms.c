@@ -24,9 +24,9 @@ static const room rooms[] = {
     {"volume", "base geom"},
     {"mesh", "base geom"},
     {"smooth", "base geom mesh"},
-    {"labels", "base geom volume mesh smooth"},
     {"subdivide", "base geom mesh"},
     {"simplify", "base geom mesh"},
+    {"labels", "base geom volume mesh smooth simplify"},
     {"field", "base geom"},
     {"lanes", "base field"},
     {"voxelize", "base geom mesh field lanes"},
@@ -34,9 +34,11 @@ static const room rooms[] = {
     {"eval", "base geom field gpu"},
     {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field lanes gpu eval"},
-    {"scene", "base geom field"},
+    {"font", "base field"},
+    {"scene", "base geom field font"},
     {"io", "base geom volume mesh field"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field lanes voxelize gpu eval iso render scene io"},
+    {"pipeline",
+     "base geom volume mesh smooth labels subdivide simplify field lanes voxelize gpu eval iso render font scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -76,6 +78,7 @@ static const header headers[] = {
     {"picture", "open"},
     {"render", "render"},
     {"render_job", "pipeline"},
+    {"font", "font"},
     {"sampling", "open"},
     {"sampling_io", "io"},
     {"heights", "io"},

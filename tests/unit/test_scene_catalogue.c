@@ -53,6 +53,7 @@ static void the_same_as_from_c(void **state)
     SAME("flat:extrude(0.7)", hewn_extrude(f, flat, 0.7));
     SAME("flat:revolve()", hewn_revolve(f, flat));
     SAME("loft(flat, other, 0.7)", hewn_loft(f, flat, other, 0.7));
+    SAME("label(a, 7)", hewn_label(f, a, 7));
     SAME("gyroid(0.9, 0.1)", hewn_gyroid(f, 0.9, 0.1));
     SAME("schwarz_p(0.9)", hewn_schwarz_p(f, 0.9, 0));
     SAME("schwarz_d(0.9, 0.1)", hewn_schwarz_d(f, 0.9, 0.1));

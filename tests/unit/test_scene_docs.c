@@ -14,6 +14,18 @@ static char *read_document(void)
     return text;
 }
 
+/* The font that examples name. */
+static void copy_font(const char *folder)
+{
+    char path[512];
+    size_t length = 0;
+    snprintf(path, sizeof path, "%s/assets/scenes/fonts/DejaVuSerif-Bold.ttf", test_source_root());
+    char *bytes = test_read(path, &length);
+    assert_non_null(bytes);
+    test_write(folder, "letters.ttf", bytes, length);
+    free(bytes);
+}
+
 /* Runs each block between ``` lines. One that begins with "-- name.lua" is a file beside those after it. */
 static void test_examples_run(void **state)
 {
@@ -21,6 +33,7 @@ static void test_examples_run(void **state)
     char folder[64], *text = read_document();
     int lua = 0, vm = 0;
     test_make_folder(folder);
+    copy_font(folder);
     for (char *at = text; (at = strstr(at, "\n```")) != NULL;) {
         at += 4;
         bool is_lua = strncmp(at, "lua\n", 4) == 0, is_vm = strncmp(at, "vm\n", 3) == 0;
