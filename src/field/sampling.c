@@ -43,7 +43,7 @@ static uint32_t count_levels(const uint32_t bricks[3])
 static uint64_t level_nodes(const uint32_t bricks[3], uint32_t level)
 {
     uint64_t nodes = 1;
-    uint32_t size = level == 0 ? 0 : level - 1;
+    uint32_t size = level == 0 ? 0 : (level - 1) % HEWN_SAMPLING_HEAD;
     for (int i = 0; i < 3; i++)
         nodes *= (bricks[i] + (1u << size) - 1) >> size;
     return nodes;
