@@ -96,8 +96,8 @@ const hewn_command hewn_command_convert = {
              "--min-volume, --fill-cavities, --smooth, --simplify. Lengths and volumes are in\n"
              "the input's unit, which is mm for a patient.\n"
              "\n"
-             "A scene (.lua, .vm), or a mesh where the output is .vdb or .nrrd, is sampled into\n"
-             "a volume, as `hewn voxelize` does.\n",
+             "A scene (.lua, .vm), or a mesh where the output is .vdb or .nrrd, is sampled\n"
+             "into a volume, as `hewn voxelize` does.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"

@@ -20,12 +20,12 @@ const hewn_command hewn_command_voxelize = {
     .name = "voxelize",
     .summary = "sample the distance to a mesh or a scene into a volume",
     .usage = "MESH|SCENE -o FILE.vdb|FILE.nrrd [OPTION]...",
-    .about = "Writes signed distances, negative inside, at the points of a lattice: as a narrow\n"
-             "band around the surface, which .vdb files hold sparsely, or with --dense all of\n"
-             "them. Distances to a mesh (.glb, .gltf, .obj, .ply, .stl, .off, also with .gz)\n"
-             "are exact. What is inside is told by winding numbers, so it may have holes, pass\n"
-             "through itself, or be inside out; how sure that is, is told as confidence. Of a\n"
-             "scene (.lua, .vm) the values of its field are written. Needs no device.\n",
+    .about = "Writes signed distances, negative inside, at the points of a lattice: as a\n"
+             "narrow band around the surface, which .vdb files hold sparsely, or with --dense\n"
+             "all of them. Distances to a mesh (.glb, .gltf, .obj, .ply, .stl, .off, also with\n"
+             ".gz) are exact. What is inside is told by winding numbers, so it may have holes,\n"
+             "pass through itself, or be inside out; how sure that is, is told as confidence.\n"
+             "Of a scene (.lua, .vm) the values of its field are written. Needs no device.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"

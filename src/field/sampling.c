@@ -33,17 +33,17 @@ static uint64_t corner_count(const uint32_t cells[3], const uint32_t bricks[3])
 /* Levels up to the one whose blocks are one. */
 static uint32_t count_levels(const uint32_t bricks[3])
 {
-    uint32_t most = bricks[0] > bricks[1] ? bricks[0] : bricks[1], level = 1;
+    uint32_t most = bricks[0] > bricks[1] ? bricks[0] : bricks[1], size = 0;
     most = bricks[2] > most ? bricks[2] : most;
-    while ((most + (1u << (level - 1)) - 1) >> (level - 1) > 1)
-        level++;
-    return level + 1;
+    while (size < HEWN_SAMPLING_HEAD - 2 && most > 1u << size)
+        size++;
+    return size + 2;
 }
 
 static uint64_t level_nodes(const uint32_t bricks[3], uint32_t level)
 {
     uint64_t nodes = 1;
-    uint32_t size = level == 0 ? 0 : level - 1;
+    uint32_t size = level == 0 ? 0 : (level - 1) % HEWN_SAMPLING_HEAD;
     for (int i = 0; i < 3; i++)
         nodes *= (bricks[i] + (1u << size) - 1) >> size;
     return nodes;
