@@ -1,4 +1,4 @@
-/* Smoothing by VTK behind C faces: seconds of the filter alone, results in `positions`. */
+/* Smoothing by VTK and CGAL behind C faces: seconds of the filter alone, results in `positions`. */
 #ifndef HEWN_BENCH_SMOOTH_PEERS_H
 #define HEWN_BENCH_SMOOTH_PEERS_H
 
@@ -11,6 +11,9 @@ extern "C" {
 /* `angle` above 0: edges that bend by more are features, and smoothed along themselves. */
 double vtk_windowed_sinc(const peer_input *input, int iterations, double passband, double angle, double *positions);
 double vtk_laplace(const peer_input *input, int iterations, double *positions);
+
+/* Mean curvature flow, implicit; `time` in square lengths. */
+double cgal_smooth_shape(const peer_input *input, double time, int iterations, double *positions);
 
 #ifdef __cplusplus
 }

@@ -44,12 +44,17 @@ typedef struct hewn_extract_desc {
     /* By dual contouring: how far, in scene units, the surface may move where triangles are merged to fewer and larger
      * ones, see docs/extraction.md; 0: all cells are of one size. Not together with `quads`. */
     double adaptive;
+    /* Bytes that a run may take at once, of the device and the host together (of the host: what the run itself and a
+     * sink take; not the program, the field, the driver and what they held before); 0: no limit. A single mesh that does
+     * not fit is HEWN_OUT_OF_DEVICE_MEMORY; hewn_extract_parts() makes the parts as large as fit. */
+    uint64_t max_memory;
     const hewn_progress *progress;
 } hewn_extract_desc;
 
 /* What an extraction did. Seconds are wall time on the caller's thread; begin counts from the start of the run. */
 typedef struct hewn_extract_stage {
-    const char *name; /* prepare, cull, evaluate, extract, suspects, read_back; where it is adaptive collapse */
+    const char *name; /* prepare, cull, evaluate, extract, suspects, read_back; where it is adaptive collapse; in parts
+                         prepare, count, extract */
     double begin, end;
 } hewn_extract_stage;
 
@@ -77,6 +82,10 @@ typedef struct hewn_extract_stats {
     /* By adaptive dual contouring; the features above are the uniform surface's too: */
     uint64_t uniform_vertices, uniform_triangles; /* before the merges */
     uint64_t octree_merges, pair_merges;          /* in nodes of the octree, and afterwards of neighbours */
+    /* By hewn_extract_parts(): */
+    uint64_t parts;                 /* that the mesh came in */
+    uint64_t peak_memory;           /* most bytes in use at once, as max_memory counts them */
+    uint64_t vertices, triangles;   /* of the whole */
     hewn_extract_stage stages[8];
     uint32_t stage_count;
 } hewn_extract_stats;
@@ -102,6 +111,15 @@ HEWN_API void hewn_extractor_destroy(hewn_extractor **extractor);
  * docs/extraction.md says what each method guarantees. */
 HEWN_API hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_triangles *out,
                                   hewn_extract_stats *stats, hewn_error *error);
+
+/* The same mesh in parts, which a sink takes one by one: for meshes that are larger than memory. The field is evaluated
+ * twice, first to count. Vertices and triangles are the bits that hewn_extract() gives, at the same places; so are the
+ * statistics, but for the stages. Not for `adaptive` (HEWN_INVALID_ARGUMENT). HEWN_LIMIT for 2^32 - 1 vertices or more;
+ * HEWN_OUT_OF_DEVICE_MEMORY where even the least part needs more than `max_memory`, saying how much; else as
+ * hewn_extract() and as the sink. After an error the sink may have taken some parts, also where there is no surface but
+ * a cap (HEWN_BAD_INPUT). */
+HEWN_API hewn_result hewn_extract_parts(hewn_extractor *extractor, const hewn_extract_desc *desc,
+                                        const hewn_mesh_sink *sink, hewn_extract_stats *stats, hewn_error *error);
 
 #ifdef __cplusplus
 }

@@ -44,9 +44,9 @@ typedef struct hewn_file_job_desc {
     const hewn_axis *to_up;         /* likewise */
     const hewn_repair_desc *repair; /* in the input's unit; its progress is not looked at. NULL: no repair */
     const hewn_file_subdivide *subdivide; /* after repair; NULL: no subdivision */
+    const hewn_file_smooth *smooth;       /* after that; NULL: no smoothing */
     const hewn_simplify_desc *simplify;   /* after that, lengths in the input's unit; its labels, frozen and progress
                                              are not looked at. NULL: no simplification */
-    const hewn_file_smooth *smooth;       /* after that; NULL: no smoothing */
     bool check;                           /* examine what will be written, */
     bool skip_self_intersections;         /* but for these */
     double began;                  /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */

@@ -10,6 +10,7 @@
 #include "hewn/field.h"
 #include "hewn/file_job.h"
 #include "hewn/font.h"
+#include "hewn/heights.h"
 #include "hewn/io.h"
 #include "hewn/job.h"
 #include "hewn/labels.h"
@@ -20,6 +21,8 @@
 #include "hewn/render.h"
 #include "hewn/render_job.h"
 #include "hewn/repair.h"
+#include "hewn/sampling.h"
+#include "hewn/sampling_io.h"
 #include "hewn/scene.h"
 #include "hewn/simplify.h"
 #include "hewn/smooth.h"
@@ -30,5 +33,7 @@
 #include "hewn/volume_extract.h"
 #include "hewn/volume_io.h"
 #include "hewn/volume_job.h"
+#include "hewn/voxelize.h"
+#include "hewn/voxelize_job.h"
 
 #endif

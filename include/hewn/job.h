@@ -37,6 +37,10 @@ typedef struct hewn_mesh_job_desc {
     bool quads;      /* write faces of four corners: for a dual method, and a format that has polygons */
     double adaptive; /* how far triangles of dc may move where they are merged, scene units; 0: none are */
     const hewn_simplify_desc *simplify; /* lengths in scene units; NULL: no simplification */
+    /* Bytes that making the mesh may take, of the device and the host together, see hewn_extract_desc; the mesh is then
+     * made in parts, which wait on disk beside the output, and is the same. Not together with `adaptive` or `simplify`.
+     * 0: no limit. The driver and the program itself are not counted. */
+    uint64_t max_memory;
     const char *device; /* an index or a part of a name; NULL: HEWN_DEVICE from the environment, else the best */
     bool validation;    /* turn the validation layer on; its messages go to stderr and are counted in the report */
     uint32_t threads;   /* of this job, on the host and in a driver that runs on the host; 0: what they choose */
@@ -47,8 +51,8 @@ typedef struct hewn_mesh_job_desc {
 
 /* A stage of a job, in seconds since the job began. Stages may overlap. */
 typedef struct hewn_report_stage {
-    char name[16]; /* startup, load, compile, prepare, cull, evaluate, extract, read_back, collapse, paint, simplify,
-                      certify, write, shutdown */
+    char name[16]; /* startup, load, compile, prepare, cull or count, evaluate, extract, read_back, collapse, paint,
+                      simplify, certify, write, shutdown */
     double begin, end;
 } hewn_report_stage;
 
@@ -72,6 +76,8 @@ typedef struct hewn_report {
     size_t file_count;
     hewn_report_parameter *parameters;
     size_t parameter_count;
+    hewn_scene_sampled *sampled; /* files that the scene sampled */
+    size_t sampled_count;
     char units[16]; /* of the scene's coordinates, and so of the certificate's volume and area */
     hewn_device_info device;
     hewn_mesh_format format;
@@ -80,9 +86,10 @@ typedef struct hewn_report {
     uint32_t threads;    /* asked for; 0 where they were not */
     bool open;
     bool quads;
-    bool colors;     /* whether vertices have colours, */
-    bool labels;     /* and faces (GLB: vertices) labels, from the scene's paint */
-    double adaptive; /* asked for; 0 where it was not */
+    double adaptive;     /* asked for; 0 where it was not */
+    uint64_t max_memory; /* asked for; 0 where it was not */
+    bool colors;         /* whether vertices have colours, */
+    bool labels;         /* and faces (GLB: vertices) labels, from the scene's paint */
     hewn_bounds_source bounds_source;
     hewn_extract_stats extraction; /* bounds, cells, counts of visited cells and bricks */
     bool simplified;

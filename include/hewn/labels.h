@@ -4,6 +4,7 @@
 #define HEWN_LABELS_H
 
 #include "hewn/model.h"
+#include "hewn/simplify.h"
 #include "hewn/smooth.h"
 #include "hewn/volume.h"
 
@@ -21,6 +22,7 @@ extern "C" {
  * bit for bit. Each shell by itself is closed, manifold at edges and vertices, and oriented outward; no two vertices of
  * the mesh are in the same place. */
 typedef struct hewn_label_mesh {
+    hewn_body_counts islands; /* of all labels together, where a choice of them was asked for */
     uint32_t label_count;
     int64_t *labels;       /* the value of label number n is labels[n - 1]; ascending */
     uint64_t *voxel_count; /* how many voxels it has: voxel_count[n - 1], at least 1 */
@@ -41,6 +43,10 @@ typedef struct hewn_label_desc {
     size_t label_count;    /* of these; repeated ones count once, and those without voxels are left out */
     uint32_t
         relaxations; /* passes in which each vertex moves half way to the mean of its neighbours, within its cell */
+    /* Which islands of each label to mesh, voxels that share faces being of one; volumes are those of the voxels, in
+     * the world's unit cubed. What is left out counts as outside. Cavities are hollows of the outside, which is joined
+     * over edges too, and one is filled by the label around it where that is the only one. NULL: all as it is. */
+    const hewn_body_choice *keep;
     const hewn_progress *progress; /* or NULL; the stages are "label" and "relax" */
 } hewn_label_desc;
 
@@ -63,6 +69,11 @@ HEWN_API uint32_t hewn_label_mesh_find(const hewn_label_mesh *mesh, int64_t labe
 /* Smooths all shells as one (hewn/smooth.h): where three or more labels meet, vertices move along the curve or stay. */
 HEWN_API hewn_result hewn_label_mesh_smooth(hewn_label_mesh *mesh, const hewn_smooth_desc *desc,
                                             hewn_smooth_report *report, hewn_error *error);
+
+/* Simplifies all shells as one (hewn/simplify.h): they go on sharing what they share. Vertices where three or more
+ * labels meet stay as they are; those between two labels may go, also onto these. Shells stay closed and manifold. */
+HEWN_API hewn_result hewn_label_mesh_simplify(hewn_label_mesh *mesh, const hewn_simplify_desc *desc,
+                                              hewn_simplify_report *report, hewn_error *error);
 
 /* The shell of label `number` (1 to label_count) as a model of its own: its triangles and vertices in the mesh's order,
  * of unknown unit and axes. HEWN_INVALID_ARGUMENT, HEWN_OUT_OF_MEMORY. */

@@ -100,6 +100,11 @@ HEWN_API hewn_result hewn_polygons_smooth(const hewn_polygons *polygons, const h
 HEWN_API hewn_result hewn_model_smooth(hewn_model *model, const hewn_smooth_desc *desc, hewn_smooth_report *report,
                                        hewn_error *error);
 
+/* The same of the extraction's triangles; normals, where there are any, are made anew. Positions are rounded to floats
+ * again; HEWN_LIMIT where one does not fit. */
+HEWN_API hewn_result hewn_triangles_smooth(hewn_triangles *triangles, const hewn_smooth_desc *desc,
+                                           hewn_smooth_report *report, hewn_error *error);
+
 /* The same of a half-edge mesh without holes (hewn_mesh_compact()); HEWN_INVALID_ARGUMENT for one with holes. */
 HEWN_API hewn_result hewn_mesh_smooth(hewn_mesh *mesh, const hewn_smooth_desc *desc, hewn_smooth_report *report,
                                       hewn_error *error);

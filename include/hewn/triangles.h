@@ -47,6 +47,59 @@ typedef struct hewn_certificate {
 HEWN_API hewn_result hewn_certify(const hewn_triangles *triangles, const hewn_progress *progress, hewn_certificate *out,
                                   hewn_error *error);
 
+/* --- meshes that come in parts ------------------------------------------------------------------------------------ */
+
+/* Numbers in a row. */
+typedef struct hewn_number_run {
+    uint64_t first, count;
+} hewn_number_run;
+
+/* Vertices `first` to `first + count - 1` of the mesh. */
+typedef struct hewn_vertex_run {
+    uint64_t first, count;
+    const float *positions, *normals; /* count × 3 */
+} hewn_vertex_run;
+
+typedef struct hewn_triangle_run {
+    uint64_t first, count;
+    const uint32_t *indices; /* count × 3: numbers of the whole mesh's vertices, also of such as are still to come */
+} hewn_triangle_run;
+
+/* A part of a mesh. Each vertex and triangle comes once, at the place that it has in the whole; runs may be empty. `open`
+ * tells, in ascending order, the vertices that are still to come or that triangles of later parts may still name. */
+typedef struct hewn_mesh_part {
+    hewn_vertex_run vertices[2];
+    hewn_triangle_run triangles[2];
+    const hewn_number_run *open;
+    uint64_t open_count;
+} hewn_mesh_part;
+
+/* Where the parts of a mesh go. What a part points to is there for the time of the call only. */
+typedef struct hewn_mesh_sink {
+    void *user;
+    hewn_result (*take)(void *user, const hewn_mesh_part *part, hewn_error *error);
+    /* Host memory that it will take at the most while it takes a part, with what it holds already; of NULL, what it
+     * holds. NULL: none. */
+    uint64_t (*bytes)(void *user, const hewn_mesh_part *part);
+} hewn_mesh_sink;
+
+/* Certifies a mesh that comes in parts, in memory that grows with the largest part and with what is open. The
+ * certificate is the one that hewn_certify() gives of the whole, bit by bit; triangles must name vertex 0. */
+typedef struct hewn_certifier hewn_certifier;
+HEWN_API hewn_result hewn_certifier_create(hewn_certifier **out, hewn_error *error);
+HEWN_API void hewn_certifier_destroy(hewn_certifier **certifier);
+
+/* HEWN_BAD_INPUT for a position that is not finite; HEWN_INVALID_ARGUMENT for a vertex that comes twice or is named when
+ * it is no longer open; HEWN_LIMIT for parts of 2^32 corners; HEWN_OUT_OF_MEMORY. After an error the certifier can only
+ * be destroyed. */
+HEWN_API hewn_result hewn_certifier_take(hewn_certifier *certifier, const hewn_mesh_part *part, hewn_error *error);
+
+/* As the sink's, for hewn_certifier_take(). */
+HEWN_API uint64_t hewn_certifier_bytes(const hewn_certifier *certifier, const hewn_mesh_part *part);
+
+/* After the last part. HEWN_INVALID_ARGUMENT where vertices are missing or open. `max_residual` is NaN. */
+HEWN_API hewn_result hewn_certifier_finish(hewn_certifier *certifier, hewn_certificate *out, hewn_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -176,6 +176,53 @@ HEWN_API void hewn_volume_histogram_destroy(hewn_volume_histogram *histogram);
 HEWN_API hewn_result hewn_volume_find_percentile(const hewn_volume *volume, uint64_t frame, double percent, double *out,
                                                  hewn_error *error);
 
+/* --- bodies ------------------------------------------------------------------------------------------------------- */
+
+/* Which parts of what is in a volume to mesh. A body is a piece of what is inside, connected as the mesh is, with the
+ * cavities in it: its volume is what its hull encloses, less what its cavities do. In a cavity there may be more
+ * bodies; they count for themselves. First the largest are kept, then of these those that are large enough, then
+ * cavities are filled. */
+typedef struct hewn_body_choice {
+    uint64_t largest;    /* keep so many bodies, those of the greatest volume; 0: all */
+    double least_volume; /* and of these those of at least this volume, in the mesh's space; 0: all */
+    bool fill_cavities;  /* drop the walls of cavities, and the bodies in them, which are swallowed */
+} hewn_body_choice;
+
+typedef struct hewn_body_counts {
+    uint64_t bodies, cavities;           /* that there are; 0 where no choice was asked for */
+    uint64_t kept_bodies, kept_cavities; /* that are meshed */
+    double largest_volume;               /* of a body, in the mesh's space */
+} hewn_body_counts;
+
+/* --- smoothing ---------------------------------------------------------------------------------------------------- */
+
+typedef enum hewn_volume_filter {
+    HEWN_VOLUME_GAUSSIAN, /* `length` is the standard deviation */
+    HEWN_VOLUME_MEDIAN    /* `length` is the radius of a ball: the median of the voxels whose centres are in it */
+} hewn_volume_filter;
+
+typedef struct hewn_volume_smooth_desc {
+    uint64_t frame;
+    hewn_volume_filter filter;
+    double length;                 /* above 0, in the world's unit, along every axis, whatever the voxels' shape */
+    const hewn_progress *progress; /* or NULL; the stage is "filter" */
+} hewn_volume_smooth_desc;
+
+/* A frame smoothed, as a volume of that frame alone, in the same place with the same slope and intercept. Neither
+ * filter looks beyond the border: weights there are those of the voxels that are inside, made to sum up to 1, so that
+ * what is constant stays so. NaN has no weight, nor has infinity in the Gaussian; such voxels themselves stay as they
+ * are. The Gaussian is the discrete one, exp(-t) I_n(t), whose deviation is right for less than a voxel too (Lindeberg
+ * 1990, 'Scale-space for discrete signals'), along i, j and k in turn, cut off where less than a millionth is left; it
+ * gives floats, or doubles for integers of 32 and 64 bits and doubles. The median (of an even number: the lower one)
+ * keeps the type, but makes floats of halves and doubles of 64-bit integers. The same bytes for any number of threads.
+ * Memory beside the result: a few slices for each thread, and 4 bytes a voxel where there are NaN or infinities.
+ *
+ * HEWN_INVALID_ARGUMENT for a frame that is not there, a length that is not above 0 and finite or is longer than the
+ * volume, and for a ball in which there are no neighbours or more than 32,768 voxels; HEWN_OUT_OF_MEMORY;
+ * HEWN_CANCELLED. `*out` is then zero. */
+HEWN_API hewn_result hewn_volume_smooth(const hewn_volume *volume, const hewn_volume_smooth_desc *desc,
+                                        hewn_volume *out, hewn_error *error);
+
 /* --- iso values --------------------------------------------------------------------------------------------------- */
 
 typedef enum hewn_iso_kind {

@@ -26,17 +26,19 @@ typedef struct hewn_volume_extract_desc {
     bool open;           /* leave the surface open at the outermost samples, instead of closing it there with a cap */
     bool no_normals;     /* leave them out */
     const double *place; /* 16 numbers, row by row: from (i, j, k, 1) to the mesh's space; NULL: to_world */
+    const hewn_body_choice *keep;  /* NULL: everything. Not with `open`, where there is no inside to tell apart */
     const hewn_progress *progress; /* or NULL; the stage is "extract" */
 } hewn_volume_extract_desc;
 
 typedef struct hewn_volume_extract_stats {
-    hewn_method method;           /* that was used */
-    bool below;                   /* what was taken for inside: values below the iso value */
-    uint64_t cells[3];            /* between samples, 0 along an axis with one sample */
-    uint64_t active_cells;        /* that hold surface, with those between the outermost samples and their cap */
-    uint64_t decided_cells;       /* of these: where values decided how the surface is connected */
-    uint64_t cap_vertices;        /* that lie on the bounds because the surface was cut there */
-    hewn_extract_stage stages[4]; /* signs, count, vertices, triangles; seconds from the begin of the call */
+    hewn_method method;     /* that was used */
+    bool below;             /* what was taken for inside: values below the iso value */
+    uint64_t cells[3];      /* between samples, 0 along an axis with one sample */
+    uint64_t active_cells;  /* that hold surface, with those between the outermost samples and their cap */
+    uint64_t decided_cells; /* of these: where values decided how the surface is connected */
+    uint64_t cap_vertices;  /* that lie on the bounds because the surface was cut there */
+    hewn_body_counts bodies;
+    hewn_extract_stage stages[5]; /* signs, count, vertices, triangles, bodies; seconds from the begin of the call */
     uint32_t stage_count;
 } hewn_volume_extract_stats;
 
@@ -52,12 +54,13 @@ typedef struct hewn_volume_extract_stats {
  * a manifold border there. Positions are in the space of `place`, faces turned over where that mirrors. The same bytes
  * for any number of threads.
  *
- * Memory beside the mesh: a bit a sample and 24 bytes a row of samples.
+ * Memory beside the mesh: a bit a sample and 24 bytes a row of samples; with `keep`, 4 bytes a vertex.
  *
- * HEWN_INVALID_ARGUMENT for a frame that is not there, an iso value that is not finite, another method, or a place that
- * is singular or not finite; HEWN_BAD_INPUT where there is no surface (hewn_volume_range tells why) or where the place
- * is so far from the origin that float positions cannot tell vertices apart; HEWN_LIMIT for more vertices than indices
- * can name; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. `stats` may be NULL. Safe from several threads at once. */
+ * HEWN_INVALID_ARGUMENT for a frame that is not there, an iso value or least volume that is not finite, another method,
+ * a place that is singular or not finite, or `keep` with `open`; HEWN_BAD_INPUT where there is no surface
+ * (hewn_volume_range tells why), no body that is large enough, or where the place is so far from the origin that float
+ * positions cannot tell vertices apart; HEWN_LIMIT for more vertices than indices can name; HEWN_OUT_OF_MEMORY;
+ * HEWN_CANCELLED. `stats` may be NULL. Safe from several threads at once. */
 HEWN_API hewn_result hewn_volume_extract(const hewn_volume *volume, const hewn_volume_extract_desc *desc,
                                          hewn_triangles *out, hewn_volume_extract_stats *stats, hewn_error *error);
 

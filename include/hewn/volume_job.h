@@ -3,6 +3,8 @@
 #define HEWN_VOLUME_JOB_H
 
 #include "hewn/job.h"
+#include "hewn/simplify.h"
+#include "hewn/smooth.h"
 #include "hewn/volume_extract.h"
 #include "hewn/volume_io.h"
 
@@ -23,6 +25,12 @@ typedef struct hewn_volume_job_desc {
     hewn_inside inside;
     hewn_method method;
     bool open;
+    /* What is done besides, in this order. Lengths and volumes are in the volume's own unit, whatever the mesh is in;
+     * those of meshes in voxels' space are in voxels. Frames, labels and progress are not looked at. NULL: not done. */
+    const hewn_volume_smooth_desc *filter; /* the iso value is found in what it gives */
+    const hewn_body_choice *keep;          /* not with `open` */
+    const hewn_smooth_desc *smooth;
+    const hewn_simplify_desc *simplify;
     hewn_space space;              /* the default is glTF's for GLB, else RAS or the world */
     const hewn_unit *unit;         /* what the input is in, whatever it says itself; NULL: as it says */
     const hewn_unit *to_unit;      /* what the output shall be in; NULL: metres in glTF's space, else as it is */
@@ -61,11 +69,16 @@ typedef struct hewn_volume_report {
     hewn_volume_range range;
     uint64_t bins[HEWN_VOLUME_REPORT_BINS];
     hewn_volume_extract_stats extraction;
+    hewn_volume_smooth_desc filter; /* as asked for; a length of 0: the volume was not smoothed */
+    bool smoothed, simplified;
+    hewn_smooth_method smooth_method;
+    hewn_smooth_report smooth;     /* in the mesh's unit */
+    hewn_simplify_report simplify; /* likewise */
     hewn_certificate certificate;
     uint64_t vertices, faces;
     uint64_t peak_host_bytes;
     double seconds;
-    hewn_report_stage stages[8]; /* load, iso, measure, extract, certify, write */
+    hewn_report_stage stages[12]; /* load, filter, iso, measure, extract, smooth, simplify, certify, write */
     uint32_t stage_count;
 } hewn_volume_report;
 

@@ -4,7 +4,8 @@
 
 #include "iso/brick.h"
 
-/* The vertex on an edge of the cell at `sample_at`: the brick that owns the edge knows its rank. */
+/* The vertex on an edge of the cell at `sample_at`: the brick that owns the edge knows its rank. Where a part of the grid
+ * ends, nobody may own it: then what comes out is some number, and of no use. */
 uint edge_vertex(Uints links, Uints edges, uint slot, uvec3 sample_at, uint edge)
 {
     uint axis = edge >> 2;
@@ -16,6 +17,7 @@ uint edge_vertex(Uints links, Uints edges, uint slot, uvec3 sample_at, uint edge
     uint owner = slot;
     if (link != 0u)
         owner = links.at[slot * HEWN_BRICK_LINKS + link];
+    owner = owner < HEWN_ALL_OUTSIDE ? owner : slot;
     at &= 7u;
     uint number = at.x | at.y << 3 | at.z << 6;
     uint pair = 2u * (owner * HEWN_BRICK_EDGE_WORDS + axis * HEWN_BRICK_WORDS + (number >> 5));

@@ -59,6 +59,21 @@ struct hewn_compact_push {
     HEWN_UINTS kept;    /* out: packed coordinates */
 };
 
+/* Takes blocks back that a part of the grid does not need. Bricks are numbered in their order: by blocks of the top level,
+ * x fastest, and within a block by its children. */
+struct hewn_clip_push {
+    HEWN_UINT dense[3]; /* as above */
+    HEWN_UINT tested;
+    HEWN_UINT top[3]; /* blocks of the top level */
+    HEWN_UINT level;  /* the blocks', 0 is the top */
+    HEWN_UINT below;  /* levels below that */
+    HEWN_UINT begin;  /* the part's own bricks are those from `begin` */
+    HEWN_UINT end;    /* up to before `end` */
+    HEWN_UINTS parents;
+    HEWN_UINTS states; /* blocks taken back become stand-ins, */
+    HEWN_UINTS flags;  /* and 0 */
+};
+
 /* What the device knows of a level: 32-bit words at these places. The levels' words follow each other, so a level also
  * writes the next one's. */
 #define HEWN_CONTROL_TESTED 0u   /* blocks tested at this level */

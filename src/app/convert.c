@@ -5,14 +5,13 @@
 #include "app/smooth_arguments.h"
 #include "app/volume_arguments.h"
 #include "app/volume_convert.h"
+#include "app/voxelize_arguments.h"
 #include "base/error.h"
 
 static const hewn_option options[] = {
     HEWN_OPTION_OUTPUT,
     HEWN_OPTION_SIMPLIFY,
-    {0, "smooth", "METHOD",
-     "Smooth it on the way by taubin, laplacian, cotan, implicit, bilateral or hc with their defaults; `hewn "
-     "smooth` has their parameters."},
+    HEWN_OPTION_SMOOTH,
     HEWN_OPTIONS_LABELS,
     HEWN_OPTIONS_FRAME,
     {0, "from", "FORMAT",
@@ -21,6 +20,7 @@ static const hewn_option options[] = {
     HEWN_OPTION_TO,
     HEWN_OPTIONS_VOLUME,
     HEWN_OPTIONS_VOLUME_MESH,
+    HEWN_OPTIONS_VOXELIZE,
     HEWN_OPTION_REPORT,
     HEWN_OPTION_QUIET,
     HEWN_OPTION_HELP,
@@ -40,7 +40,7 @@ static hewn_result read(const hewn_arguments *arguments, hewn_file_steps *steps,
     if (!method)
         return HEWN_OK;
     desc->smooth = &steps->smooth;
-    return hewn_smooth_method_parse(method, "--smooth", &steps->smooth.desc.method, error);
+    return hewn_smooth_spec_parse(method, "--smooth", &steps->smooth, error);
 }
 
 static void print(const hewn_file_job_desc *desc, const hewn_file_report *report)
@@ -48,12 +48,17 @@ static void print(const hewn_file_job_desc *desc, const hewn_file_report *report
     if (desc->simplify)
         hewn_simplify_print(&report->simplify);
     if (desc->smooth)
-        hewn_smooth_print(report);
+        hewn_smooth_print(&report->smooth, report->smooth_method);
 }
 
 /* What has a mesh's extension is one, whatever it begins with. */
 static int run(const hewn_command *command, const hewn_arguments *arguments)
 {
+    hewn_error error = {0};
+    if (hewn_voxelize_wanted(arguments))
+        return hewn_voxelize_run(command, arguments);
+    if (hewn_voxelize_refuse(arguments, &error) != HEWN_OK)
+        return hewn_report_misuse(command, &error);
     if (hewn_label_arguments_any(arguments))
         return hewn_label_command_run(command, arguments);
     hewn_volume_format format;
@@ -82,7 +87,14 @@ const hewn_command hewn_command_convert = {
              "With --labels the volume is one of labels, and the surface of each is written:\n"
              "all are made at once, closed and manifold, and neighbours fit without a gap. A\n"
              ".glb file has a node a label, .obj and .ply an object; for a file a label name a\n"
-             "folder (-o DIR/) or a pattern (-o {name}.stl).\n",
+             "folder (-o DIR/) or a pattern (-o {name}.stl).\n"
+             "\n"
+             "What is asked for besides is done in this order: --smooth-volume, --largest,\n"
+             "--min-volume, --fill-cavities, --smooth, --simplify. Lengths and volumes are in\n"
+             "the input's unit, which is mm for a patient.\n"
+             "\n"
+             "A scene (.lua, .vm), or a mesh where the output is .vdb or .nrrd, is sampled into\n"
+             "a volume, as `hewn voxelize` does.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
@@ -91,7 +103,10 @@ const hewn_command hewn_command_convert = {
              "  hewn convert scan.ply.gz -o - --to off | head -2\n"
              "  hewn convert head.nii.gz --iso otsu -o head.stl\n"
              "  hewn convert ct/ --iso hu:bone --space lps -o bone.obj\n"
+             "  hewn convert head.nii.gz --smooth-volume 1 --largest 1 --fill-cavities \\\n"
+             "    --smooth taubin:iterations=20 --simplify ratio:0.2 -o head.glb\n"
              "  hewn convert brain.nii.gz --labels all --names FreeSurferLUT.txt -o brain.glb\n"
+             "  hewn convert part.lua --cell 0.05 -o part.vdb\n"
              "  hewn convert seg.nrrd --labels 1,3 -o 'parts/{label}-{name}.stl'\n",
     .run = run,
 };

@@ -8,6 +8,7 @@
 
 #include "app/file_arguments.h"
 #include "app/number.h"
+#include "app/simplify_arguments.h"
 #include "app/smooth_arguments.h"
 #include "base/alloc.h"
 #include "base/error.h"
@@ -20,6 +21,8 @@ typedef struct request {
     hewn_label_job_desc desc;
     hewn_file_arguments file;
     hewn_file_smooth smooth;
+    hewn_body_choice keep;
+    hewn_simplify_desc simplify;
     int64_t *labels;
     size_t label_count, room;
 } request;
@@ -132,6 +135,24 @@ static hewn_result read_files(const hewn_arguments *arguments, request *out, hew
     return result;
 }
 
+/* What is for surfaces of values is refused, so that nobody believes it was done. */
+static hewn_result read_steps(const hewn_arguments *arguments, request *out, hewn_error *error)
+{
+    static const char *const others[] = {"smooth-volume", "method", "inside", "space", "open"};
+    bool simplify;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (hewn_arguments_has(arguments, others[i]))
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                             "--%s is for surfaces of values; it does not go with --labels", others[i]);
+    HEWN_TRY(hewn_body_arguments_read(arguments, &out->keep, error));
+    if (out->keep.largest > 0 || out->keep.least_volume > 0 || out->keep.fill_cavities)
+        out->desc.keep = &out->keep;
+    HEWN_TRY(hewn_simplify_target_read(arguments, &out->simplify, &simplify, error));
+    out->simplify.measure = out->desc.report != NULL;
+    out->desc.simplify = simplify ? &out->simplify : NULL;
+    return HEWN_OK;
+}
+
 static hewn_result read_request(const hewn_arguments *arguments, request *out, hewn_error *error)
 {
     const char *labels = hewn_arguments_value(arguments, "labels"), *method = hewn_arguments_value(arguments, "smooth");
@@ -158,8 +179,13 @@ static hewn_result read_request(const hewn_arguments *arguments, request *out, h
         HEWN_TRY(hewn_count_parse(passes, "--smooth-labels", 0, &desc->relaxations, error));
     if (desc->relaxations > 10000)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--smooth-labels takes 0 to 10000, not '%s'", passes);
+    HEWN_TRY(read_steps(arguments, out, error));
     if (method) {
-        HEWN_TRY(hewn_smooth_method_parse(method, "--smooth", &out->smooth.desc.method, error));
+        HEWN_TRY(hewn_smooth_spec_parse(method, "--smooth", &out->smooth, error));
+        if (out->smooth.lock_labels)
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                             "--smooth lock=labels is for meshes: between labels, vertices "
+                             "always move along the curves where these meet");
         desc->smooth = &out->smooth;
     }
     return read_volume(arguments, out, error);
@@ -186,6 +212,17 @@ static void print_notes(const hewn_label_report *report)
         fprintf(stderr, "hewn: note: the table has no name for %" PRIu32 " of the labels\n", report->unnamed_count);
 }
 
+/* What is not manifold here are the curves where labels meet, and that is no fault. */
+static void print_simplified(const hewn_simplify_report *report)
+{
+    hewn_simplify_report told = *report;
+    told.unwalked_vertices = 0;
+    hewn_simplify_print(&told);
+    if (report->unwalked_vertices > 0)
+        fprintf(stderr, "hewn: note: %" PRIu64 " vertices where three or more labels meet stayed as they were\n",
+                report->unwalked_vertices);
+}
+
 static void print(const hewn_label_job_desc *desc, const hewn_label_report *report)
 {
     const hewn_conversion *done = &report->conversion;
@@ -205,6 +242,12 @@ static void print(const hewn_label_job_desc *desc, const hewn_label_report *repo
     if (report->smoothed)
         fprintf(stderr, "  %s, vertices moved by %.4g in the mean, %.4g at most\n",
                 hewn_smooth_method_name(report->smooth_method), report->smooth.mean_move, report->smooth.largest_move);
+    if (report->islands.bodies > 0)
+        fprintf(stderr, "  %" PRIu64 " of %" PRIu64 " islands of labels and %" PRIu64 " of %" PRIu64 " hollows kept\n",
+                report->islands.kept_bodies, report->islands.bodies, report->islands.kept_cavities,
+                report->islands.cavities);
+    if (report->simplified)
+        print_simplified(&report->simplify);
     print_notes(report);
 }
 

@@ -41,6 +41,9 @@ static const hewn_option options[] = {
      "Compute on this device, an index or a part of a name as `hewn devices` lists them. Default: $HEWN_DEVICE, else "
      "the best."},
     {0, "threads", "N", "Use N threads. Default: one for each processor."},
+    {0, "max-memory", "SIZE",
+     "Make the mesh in parts that take at most SIZE bytes of memory, of the device and the host together; K, M and G "
+     "stand for 2^10, 2^20 and 2^30. The parts wait on disk beside FILE, and the mesh is the same. Default: no limit."},
     {0, "report", "FILE", "Write a report as JSON to FILE; `-` is standard output (not together with -o -)."},
     {'q', "quiet", NULL, "Print errors only: no progress, no summary."},
     {0, "watch", NULL, "Mesh again whenever the scene or a file that it imports changes, until Ctrl-C."},
@@ -139,9 +142,12 @@ static hewn_result read_output(const hewn_arguments *arguments, mesh_request *re
 static hewn_result read_device(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
 {
     const char *threads = hewn_arguments_value(arguments, "threads");
+    const char *memory = hewn_arguments_value(arguments, "max-memory");
     const char *validation = getenv("HEWN_VALIDATION");
     request->desc.device = hewn_arguments_value(arguments, "device");
     request->desc.validation = validation && validation[0] && strcmp(validation, "0") != 0;
+    if (memory)
+        HEWN_TRY(hewn_bytes_parse(memory, "--max-memory", &request->desc.max_memory, error));
     if (!threads)
         return HEWN_OK;
     HEWN_TRY(hewn_count_parse(threads, "--threads", 1, &request->desc.threads, error));
@@ -212,6 +218,12 @@ static void print_summary(const hewn_report *report)
             report->units[0] ? " " : "", report->units, report->seconds, report->device.name);
     if (report->simplified)
         hewn_simplify_print(&report->simplify);
+    for (size_t i = 0; i < report->sampled_count; i++)
+        if (report->sampled[i].is_mesh && report->sampled[i].doubtful > 0.01)
+            fprintf(stderr,
+                    "hewn: note: of %.1f %% of the samples at the surface of %s it is in doubt whether they are inside "
+                    "(confidence %.3f)\n",
+                    100 * report->sampled[i].doubtful, report->sampled[i].path, report->sampled[i].confidence);
     if (grid->left_bounds)
         fprintf(stderr, "hewn: note: the surface reaches the bounds and was %s there; wider --bounds keep it whole\n",
                 report->open ? "left open" : "closed with a flat cap");

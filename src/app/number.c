@@ -43,6 +43,23 @@ hewn_result hewn_count_parse(const char *text, const char *option, uint32_t leas
     return HEWN_OK;
 }
 
+hewn_result hewn_bytes_parse(const char *text, const char *option, uint64_t *out, hewn_error *error)
+{
+    static const char units[] = "KMG";
+    size_t digits = strspn(text, "0123456789");
+    const char *unit = text[digits] ? strchr(units, text[digits]) : NULL;
+    bool known = text[digits] == '\0' || (unit && text[digits + 1] == '\0');
+    if (digits == 0 || !known)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "%s takes a whole number of bytes, with K, M or G after it for more, not '%s'", option, text);
+    unsigned shift = unit ? 10 * (unsigned)(unit - units + 1) : 0;
+    unsigned long long value = strtoull(text, NULL, 10); /* ULLONG_MAX where it is more */
+    if (value == 0 || value > (uint64_t)INT64_MAX >> shift)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s makes no sense with %s bytes", option, text);
+    *out = (uint64_t)value << shift;
+    return HEWN_OK;
+}
+
 /* Numbers with commas between; `count` is how many there are, of which the first `most` are read. */
 static hewn_result read_list(const char *text, const char *option, double *out, size_t most, size_t *count,
                              hewn_error *error)

@@ -11,6 +11,9 @@ hewn_result hewn_number_parse(const char *text, const char *option, double *out,
  * refuse them. */
 hewn_result hewn_count_parse(const char *text, const char *option, uint32_t least, uint32_t *out, hewn_error *error);
 
+/* Bytes, at least 1: a whole number, and K, M or G for so many times 2^10, 2^20 or 2^30. */
+hewn_result hewn_bytes_parse(const char *text, const char *option, uint64_t *out, hewn_error *error);
+
 /* "x0,y0,z0,x1,y1,z1" */
 hewn_result hewn_bounds_parse(const char *text, const char *option, hewn_box *out, hewn_error *error);
 

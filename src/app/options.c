@@ -243,6 +243,10 @@ void hewn_options_print(const hewn_option *options, size_t option_count, FILE *f
 {
     for (size_t i = 0; i < option_count; ++i) {
         const hewn_option *option = &options[i];
+        if (!option->letter && !option->name) {
+            fprintf(file, "\n%s:\n", option->help);
+            continue;
+        }
         int column = fprintf(file, "  ");
         if (option->letter && option->name)
             column += fprintf(file, "-%c, --%s", option->letter, option->name);

@@ -13,6 +13,12 @@ typedef struct hewn_option {
     const char *help;  /* sentences; the help wraps them */
 } hewn_option;
 
+/* Among options: what the help puts above those that follow. */
+#define HEWN_OPTIONS_OF(heading)                                                                                       \
+    {                                                                                                                  \
+        0, NULL, NULL, heading                                                                                         \
+    }
+
 /* One option as it was given. */
 typedef struct hewn_given {
     const hewn_option *option;

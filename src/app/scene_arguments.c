@@ -50,6 +50,7 @@ static hewn_result read_operand(const hewn_arguments *arguments, hewn_scene_argu
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "one file at a time, please; '%s' is one too many",
                          arguments->operands[1]);
     out->desc.path = arguments->operands[0];
+    out->desc.reader = hewn_scene_reader_standard();
     return out->desc.path[0] ? HEWN_OK : hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
 }
 

@@ -44,7 +44,7 @@ static hewn_result read(const hewn_arguments *arguments, hewn_file_steps *steps,
 static void print(const hewn_file_job_desc *desc, const hewn_file_report *report)
 {
     (void)desc;
-    hewn_smooth_print(report);
+    hewn_smooth_print(&report->smooth, report->smooth_method);
 }
 
 static int run(const hewn_command *command, const hewn_arguments *arguments)

@@ -113,3 +113,19 @@ bool hewn_volume_arguments_wanted(const hewn_arguments *arguments, hewn_volume_f
         *format = HEWN_VOLUME_RAW;
     return *format == HEWN_VOLUME_RAW || hewn_volume_format_of_file(path) != HEWN_VOLUME_UNKNOWN;
 }
+
+hewn_result hewn_body_arguments_read(const hewn_arguments *arguments, hewn_body_choice *out, hewn_error *error)
+{
+    const char *largest = hewn_arguments_value(arguments, "largest");
+    const char *least = hewn_arguments_value(arguments, "min-volume");
+    uint32_t count = 0;
+    *out = (hewn_body_choice){.fill_cavities = hewn_arguments_has(arguments, "fill-cavities")};
+    if (largest)
+        HEWN_TRY(hewn_count_parse(largest, "--largest", 1, &count, error));
+    out->largest = count;
+    if (least)
+        HEWN_TRY(hewn_number_parse(least, "--min-volume", &out->least_volume, error));
+    if (least && !(out->least_volume > 0))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--min-volume must be greater than 0, not %s", least);
+    return HEWN_OK;
+}

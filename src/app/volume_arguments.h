@@ -3,6 +3,7 @@
 #define HEWN_SRC_APP_VOLUME_ARGUMENTS_H
 
 #include "app/options.h"
+#include "hewn/volume_extract.h"
 #include "hewn/volume_io.h"
 
 #define HEWN_OPTIONS_VOLUME                                                                                            \
@@ -35,6 +36,9 @@ bool hewn_volume_arguments_any(const hewn_arguments *arguments);
 /* Whether the operand is to be read as a volume, and the format that --from names. Who says what a raw file holds means
  * one. */
 bool hewn_volume_arguments_wanted(const hewn_arguments *arguments, hewn_volume_format *format);
+
+/* --largest, --min-volume and --fill-cavities. HEWN_INVALID_ARGUMENT. */
+hewn_result hewn_body_arguments_read(const hewn_arguments *arguments, hewn_body_choice *out, hewn_error *error);
 
 /* HEWN_INVALID_ARGUMENT. */
 hewn_result hewn_volume_arguments_read(const hewn_arguments *arguments, hewn_volume_arguments *out, hewn_error *error);

@@ -7,10 +7,13 @@
 
 #include "app/file_arguments.h"
 #include "app/number.h"
+#include "app/simplify_arguments.h"
+#include "app/smooth_arguments.h"
 #include "app/volume_arguments.h"
 #include "base/error.h"
 
-static const char *const names[] = {"method", "inside", "space", "open", "threads"};
+static const char *const names[] = {"method",  "inside",     "space",         "open",   "smooth-volume",
+                                    "largest", "min-volume", "fill-cavities", "threads"};
 
 bool hewn_volume_convert_any(const hewn_arguments *arguments)
 {
@@ -24,6 +27,10 @@ bool hewn_volume_convert_any(const hewn_arguments *arguments)
 typedef struct request {
     hewn_volume_job_desc desc;
     hewn_volume_arguments volume;
+    hewn_volume_smooth_desc filter;
+    hewn_body_choice keep;
+    hewn_file_smooth smooth;
+    hewn_simplify_desc simplify;
     bool quiet;
 } request;
 
@@ -53,12 +60,55 @@ static hewn_result read_place(const hewn_arguments *arguments, hewn_volume_job_d
     return read_unit(arguments, "to-unit", &desc->to_unit, error);
 }
 
-static hewn_result refuse_smoothing(const hewn_arguments *arguments, hewn_error *error)
+/* LENGTH, gaussian:LENGTH or median:LENGTH. */
+static hewn_result read_filter(const hewn_arguments *arguments, request *out, hewn_error *error)
 {
-    if (!hewn_arguments_has(arguments, "smooth"))
+    const char *text = hewn_arguments_value(arguments, "smooth-volume");
+    if (!text)
         return HEWN_OK;
-    return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                     "--smooth is for meshes: convert the volume first, then `hewn smooth` its mesh");
+    bool median = strncmp(text, "median:", 7) == 0, gaussian = strncmp(text, "gaussian:", 9) == 0;
+    const char *length = text + (median ? 7 : gaussian ? 9 : 0);
+    if (!median && !gaussian && strchr(text, ':'))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "--smooth-volume takes a length, gaussian:LENGTH or median:LENGTH, not '%s'", text);
+    out->filter.filter = median ? HEWN_VOLUME_MEDIAN : HEWN_VOLUME_GAUSSIAN;
+    HEWN_TRY(hewn_number_parse(length, "--smooth-volume", &out->filter.length, error));
+    if (!(out->filter.length > 0))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--smooth-volume must be greater than 0, not %s", length);
+    out->desc.filter = &out->filter;
+    return HEWN_OK;
+}
+
+static hewn_result read_bodies(const hewn_arguments *arguments, request *out, hewn_error *error)
+{
+    HEWN_TRY(hewn_body_arguments_read(arguments, &out->keep, error));
+    bool any = out->keep.largest > 0 || out->keep.least_volume > 0 || out->keep.fill_cavities;
+    if (any && out->desc.open)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "--largest, --min-volume and --fill-cavities do not go with --open: where surfaces are open, "
+                         "they enclose no bodies");
+    out->desc.keep = any ? &out->keep : NULL;
+    return HEWN_OK;
+}
+
+static hewn_result read_steps(const hewn_arguments *arguments, request *out, hewn_error *error)
+{
+    const char *smooth = hewn_arguments_value(arguments, "smooth");
+    bool simplify;
+    HEWN_TRY(read_filter(arguments, out, error));
+    HEWN_TRY(read_bodies(arguments, out, error));
+    if (smooth) {
+        HEWN_TRY(hewn_smooth_spec_parse(smooth, "--smooth", &out->smooth, error));
+        out->desc.smooth = &out->smooth.desc;
+    }
+    if (out->smooth.lock_labels)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "--smooth lock=labels is for meshes; the surface of a volume "
+                         "has no labels");
+    HEWN_TRY(hewn_simplify_target_read(arguments, &out->simplify, &simplify, error));
+    out->simplify.measure = out->desc.report != NULL;
+    out->desc.simplify = simplify ? &out->simplify : NULL;
+    return HEWN_OK;
 }
 
 static hewn_result read_surface(const hewn_arguments *arguments, hewn_volume_job_desc *desc, hewn_error *error)
@@ -110,8 +160,8 @@ static hewn_result read_request(const hewn_arguments *arguments, hewn_volume_for
     desc->iso = out->volume.has_iso ? &out->volume.iso : NULL;
     HEWN_TRY(read_place(arguments, desc, error));
     HEWN_TRY(read_surface(arguments, desc, error));
-    HEWN_TRY(refuse_smoothing(arguments, error));
     HEWN_TRY(read_output(arguments, desc, error));
+    HEWN_TRY(read_steps(arguments, out, error));
     out->quiet = hewn_arguments_has(arguments, "quiet");
     return HEWN_OK;
 }
@@ -166,16 +216,38 @@ static void print_place(const hewn_volume_report *report)
             report->left_handed ? "; left-handed voxels, faces turned" : "");
 }
 
+static void print_steps(const hewn_volume_report *report)
+{
+    const hewn_body_counts *bodies = &report->extraction.bodies;
+    if (report->filter.length > 0)
+        fprintf(stderr, "  values smoothed by %s of %g%s%s\n",
+                report->filter.filter == HEWN_VOLUME_MEDIAN ? "the median in a radius" : "a Gaussian",
+                report->filter.length, report->unit_before ? " " : "",
+                report->unit_before ? report->unit_before->name : "");
+    if (bodies->bodies > 0)
+        fprintf(stderr, "  %" PRIu64 " of %" PRIu64 " bod%s and %" PRIu64 " of %" PRIu64 " cavit%s kept\n",
+                bodies->kept_bodies, bodies->bodies, bodies->bodies == 1 ? "y" : "ies", bodies->kept_cavities,
+                bodies->cavities, bodies->cavities == 1 ? "y" : "ies");
+    if (report->smoothed)
+        hewn_smooth_print(&report->smooth, report->smooth_method);
+    if (report->simplified)
+        hewn_simplify_print(&report->simplify);
+}
+
 static void print_notes(const hewn_volume_report *report)
 {
     if (report->remark)
         fprintf(stderr, "hewn: note: %s\n", report->remark);
-    if (report->box_shaped)
+    bool thin = report->dims[0] == 1 || report->dims[1] == 1 || report->dims[2] == 1;
+    if (report->box_shaped && thin)
+        fputs("hewn: note: the volume is one slice, so its surface is a sheet that is closed around it\n", stderr);
+    else if (report->box_shaped)
         fprintf(stderr,
                 "hewn: warning: most of the mesh is the cap at the volume's border, so it is hardly more than a box: "
-                "values are from %.9g to %.9g, and nearly all of those at the border are inside at %.9g; --iso otsu "
-                "finds another value, --inside the other side\n",
-                report->range.lo, report->range.hi, report->iso_value);
+                "values are from %.9g to %.9g, and most of those at the border are inside at %.9g; %s or "
+                "--inside may say better what is wanted\n",
+                report->range.lo, report->range.hi, report->iso_value,
+                report->iso.kind == HEWN_ISO_NUMBER ? "--iso otsu" : "another --iso");
     else if (report->extraction.cap_vertices > 0)
         fputs("hewn: note: the surface reaches the volume's border and was closed there with a flat cap; --open leaves "
               "it open\n",
@@ -207,6 +279,7 @@ int hewn_volume_convert_run(const hewn_command *command, const hewn_arguments *a
     if (!wanted.quiet) {
         print_mesh(&report);
         print_place(&report);
+        print_steps(&report);
         print_notes(&report);
     }
     hewn_volume_report_destroy(&report);

@@ -15,6 +15,13 @@
          "Write a volume's mesh in ras or lps (of the patient), gltf (+Y up, front to +Z, in metres), world (as the "  \
          "file has it) or voxel (i, j, k). Default: gltf for GLB, else ras, or world where the file knows no "         \
          "patient."},                                                                                                  \
+        {0, "smooth-volume", "LENGTH",                                                                                 \
+         "First smooth a volume's values by a Gaussian of this standard deviation, in the volume's unit (mm of a "     \
+         "patient); median:LENGTH takes the median within that radius."},                                              \
+        {0, "largest", "N", "Keep the N largest bodies, by their volume; of labels, each one's N largest islands."},   \
+        {0, "min-volume", "V", "Keep bodies of at least this volume, in the volume's unit cubed (mm3 of a patient)."}, \
+        {0, "fill-cavities", NULL,                                                                                     \
+         "Fill the hollows in bodies, with what lies in them; of labels, those with one label around."},               \
         {0, "open", NULL,                                                                                              \
          "Leave the surface open where it leaves the volume. Default: close it there with a flat cap."},               \
     {                                                                                                                  \

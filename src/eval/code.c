@@ -25,13 +25,23 @@ static uint64_t parameter_bytes(const hewn_listing *listing)
     return (vectors > 0 ? vectors : 1) * 4 * sizeof(float);
 }
 
+/* Their addresses are among the numbers and differ from run to run: code that has them would be compiled each time. */
+static bool has_samples(const hewn_listing *listing)
+{
+    for (size_t i = 0; i < listing->count; i++)
+        if (listing->steps[i].samples)
+            return true;
+    return false;
+}
+
 static hewn_number_place choose_place(const hewn_device *device, const hewn_listing *listing, hewn_numbers numbers)
 {
     uint64_t bytes = parameter_bytes(listing);
     bool on_cpu = device->info.kind == HEWN_DEVICE_CPU;
     uint64_t most = numbers == HEWN_NUMBERS_AUTO ? CHOSEN_TABLE_BYTES : TABLE_BYTES;
     bool table = bytes <= most && bytes <= device->max_uniform_range;
-    if (numbers == HEWN_NUMBERS_IN_CODE || (numbers == HEWN_NUMBERS_AUTO && on_cpu && !table))
+    bool in_code = numbers == HEWN_NUMBERS_IN_CODE || (numbers == HEWN_NUMBERS_AUTO && on_cpu && !table);
+    if (in_code && !has_samples(listing))
         return HEWN_PLACE_CODE;
     if (on_cpu && table)
         return HEWN_PLACE_TABLE;
@@ -173,8 +183,8 @@ static hewn_result choose_blocks(hewn_code *code, hewn_error *error)
  * devices is the sum of all its kinds and of reading it (docs/performance.md). */
 enum { LISTED_FROM = 12, READING = 60, A_SLOT = 6 };
 
-/* More edges of outlines than this are walked over whatever else there is: each is the same code with other numbers, and
- * written out one by one they take longer to compile than lists take to run. */
+/* More edges of outlines than this are walked over whatever else there is: each is the same code with other numbers,
+ * and written out one by one they take longer to compile than lists take to run. */
 enum { LISTED_EDGES = 64 };
 
 static bool lists_pay(const hewn_code *code)
@@ -226,6 +236,8 @@ hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, he
         result = choose_blocks(code, error);
     }
     if (result == HEWN_OK)
+        result = hewn_samples_bring(device, &code->samples, &code->listing, error);
+    if (result == HEWN_OK)
         result = choose_evaluation(code, desc->evaluation, error);
     if (result == HEWN_OK)
         result = write_parameters(device, code, error);
@@ -256,6 +268,7 @@ void hewn_code_destroy(hewn_device *device, hewn_code **code)
     hewn_buffer_destroy(device, &(*code)->uniforms);
     hewn_instructions_destroy(&(*code)->instructions);
     hewn_listing_destroy(&(*code)->listing);
+    hewn_samples_destroy(device, &(*code)->samples);
     hewn_free(*code);
     *code = NULL;
 }
@@ -307,6 +320,10 @@ hewn_result hewn_code_renumber(hewn_code *code, const hewn_field *field, hewn_no
         return HEWN_OK;
     hewn_listing listing;
     HEWN_TRY(hewn_listing_create(&listing, field, root, error));
+    if (!hewn_samples_find(&code->samples, &listing)) {
+        hewn_listing_destroy(&listing);
+        return HEWN_OK;
+    }
     if (code->listed)
         return renumber_list(code, &listing, taken, error);
     bool same = false;
@@ -372,6 +389,10 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
                                "#extension GL_KHR_shader_subgroup_shuffle : enable\n");
     else if (code->place == HEWN_PLACE_ADDRESS)
         hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n");
+    if (code->samples.count > 0)
+        hewn_text_append(text, "#extension GL_EXT_buffer_reference : require\n"
+                               "#extension GL_EXT_buffer_reference_uvec2 : require\n"
+                               "#extension GL_EXT_scalar_block_layout : require\n");
     hewn_text_append(text, desc->head + version);
     hewn_text_append(text, "\n");
     if (code->listed) {

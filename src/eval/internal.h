@@ -5,6 +5,7 @@
 #include "eval/instructions.h"
 #include "eval/library.h"
 #include "eval/lists.h"
+#include "eval/samples.h"
 
 /* The kernels behind the batch functions, made when first asked for. */
 typedef struct hewn_batches {
@@ -37,6 +38,7 @@ struct hewn_code {
     hewn_library_choice choice;
     hewn_buffer uniforms; /* the parameters, or, where they do not fit a uniform block, their address */
     hewn_buffer parameters;
+    hewn_samples samples;  /* whose addresses are among the parameters */
     hewn_batches *batches; /* behind a pointer, since it fills while the code itself is constant */
 };
 

@@ -100,11 +100,19 @@ static uint32_t first_body(const walk *own)
     return own->set->slots == 1 && own->set->body_count > 1 ? 1 : 0;
 }
 
+/* Whether a body goes by an address among its numbers: those of other bodies must not be taken for one. */
+static bool reads_samples(const char *body)
+{
+    return strstr(body, "f_sampled(") != NULL;
+}
+
 /* How much all bodies that are made of statements begin with, in bytes: it is computed once for all. The copy apart,
  * whose only statement is its return. */
 static size_t common_start(const walk *own)
 {
     const char *first = own->set->body_count > 1 ? own->set->bodies[1].texts[own->flavour].bytes : "";
+    if (reads_samples(first))
+        return 0;
     size_t common = strlen(first);
     for (uint32_t i = 1; i < own->set->body_count; i++) {
         const char *text = own->set->bodies[i].texts[own->flavour].bytes;
@@ -122,13 +130,14 @@ static void write_body(const walk *own, uint32_t i, size_t common)
 {
     const char *text = own->set->bodies[i].texts[own->flavour].bytes + (i ? common : 0);
     const char *result = strstr(text, "return ");
-    if (!own->how->masked)
+    bool masked = own->how->masked && !reads_samples(text);
+    if (!masked)
         hewn_text_print(own->text, "if(body==%uu)", i);
     hewn_text_append(own->text, "{\n");
     hewn_text_append_bytes(own->text, text, (size_t)(result - text));
     result += strlen("return ");
     int length = (int)strcspn(result, ";");
-    if (own->how->masked)
+    if (masked)
         hewn_text_print(own->text, "r=mix(r,%.*s,%s(body==%uu));\n}\n", length, result, own->bools, i);
     else
         hewn_text_print(own->text, "r=%.*s;\n}\n", length, result);

@@ -7,6 +7,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "field/sampling.h"
 
 /* A parameter as the GPU has it. */
 static float rounded(double value)
@@ -69,6 +70,26 @@ static void put_edge(hewn_listing *listing, hewn_code_step *step, const double *
     put(listing, step, square > 0 ? fmin(1 / square, 1e29) : 0);
 }
 
+/* Where the samples are on the device, which whoever brings them there writes over the first three numbers; the cells
+ * along each axis, whether values grow past them, and the largest of them. */
+static void put_sampled(hewn_listing *listing, hewn_code_step *step, const hewn_sampling *samples)
+{
+    for (int i = 0; i < HEWN_ADDRESS_NUMBERS; i++)
+        put(listing, step, 0);
+    for (int i = 0; i < 3; i++)
+        put(listing, step, samples->cells[i]);
+    put(listing, step, samples->endless ? 0 : 1);
+    put(listing, step, fmax(fabs((double)samples->least), fabs((double)samples->greatest)));
+    step->samples = samples;
+}
+
+void hewn_listing_set_address(hewn_listing *listing, const hewn_code_step *step, uint64_t address)
+{
+    enum { BITS = 22 }; /* a float holds so many, and on no way does any of them become another float */
+    for (int i = 0; i < HEWN_ADDRESS_NUMBERS; i++)
+        listing->parameters[step->parameter + (uint32_t)i] = (float)(address >> BITS * i & ((1u << BITS) - 1));
+}
+
 static void put_parameters(hewn_listing *listing, hewn_code_step *step, const hewn_node_data *node)
 {
     const double *p = node->parameter;
@@ -84,6 +105,7 @@ static void put_parameters(hewn_listing *listing, hewn_code_step *step, const he
     case HEWN_OP_PLANE: put_affine(listing, step, p, -p[3]); break;
     case HEWN_OP_CONE: put_cone(listing, step, p); break;
     case HEWN_OP_EDGE: put_edge(listing, step, p); break;
+    case HEWN_OP_SAMPLED: put_sampled(listing, step, node->samples); break;
     case HEWN_OP_ZIGZAG:
     case HEWN_OP_BLEND_QUADRATIC:
     case HEWN_OP_BLEND_CUBIC:
@@ -128,7 +150,7 @@ static void add_step(hewn_listing *listing, const hewn_node_data *node, const ui
 static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
                         hewn_error *error)
 {
-    enum { PARAMETERS_MAX = 7 };
+    enum { PARAMETERS_MAX = 8 };
     uint32_t *places = hewn_alloc(hewn_field_node_count(field), sizeof *places);
     listing->steps = hewn_alloc_zero(count, sizeof *listing->steps);
     listing->parameters = hewn_alloc(count, PARAMETERS_MAX * sizeof *listing->parameters);
@@ -197,6 +219,7 @@ uint32_t hewn_listing_weight(const hewn_code_step *step)
     case HEWN_OP_NOISE_GRADIENT:
     case HEWN_OP_NOISE_SIMPLEX: return 220;
     case HEWN_OP_NOISE_CELLULAR: return 700;
+    case HEWN_OP_SAMPLED: return 150;
     case HEWN_OP_EDGE: return 24;
     case HEWN_OP_OUTLINE:
     case HEWN_OP_ZIGZAG: return 6;

@@ -17,9 +17,10 @@ typedef struct hewn_code_step {
     uint32_t in_count;
     uint32_t parameter; /* of the first one */
     uint32_t parameter_count;
-    uint32_t axes; /* the variables it depends on */
-    double size;   /* no value is larger, for coordinates up to HEWN_REACH */
-    bool positive; /* no value is below 0, nor are the bounds that intervals give */
+    uint32_t axes;                       /* the variables it depends on */
+    const struct hewn_sampling *samples; /* of SAMPLED, else NULL */
+    double size;                         /* no value is larger, for coordinates up to HEWN_REACH */
+    bool positive;                       /* no value is below 0, nor are the bounds that intervals give */
     bool sure; /* for such coordinates intervals are finite here and in all that it depends on: no NaN, no overflow */
 } hewn_code_step;
 
@@ -37,6 +38,10 @@ void hewn_code_step_reach(const hewn_listing *listing, hewn_code_step *step);
 
 hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, hewn_error *error);
 void hewn_listing_destroy(hewn_listing *listing);
+
+/* Says where on the device the samples of a step are. */
+enum { HEWN_ADDRESS_NUMBERS = 3 };
+void hewn_listing_set_address(hewn_listing *listing, const hewn_code_step *step, uint64_t address);
 
 /* Whether operand i is handed over as a bare number: a finite constant, to operations that have a form for it. */
 bool hewn_listing_is_plain(const hewn_listing *listing, const hewn_code_step *step, uint32_t i);

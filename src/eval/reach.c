@@ -120,6 +120,7 @@ static void reach_of_others(const hewn_listing *listing, hewn_code_step *step, c
     switch (step->op) {
     case HEWN_OP_EDGE: set(step, HEWN_OUTLINE_START, false, in->sure && sum < 0.1 * most_squared); break;
     case HEWN_OP_OUTLINE: set(step, sqrt(HEWN_OUTLINE_START), false, in->sure && sum < 0.1 * most_squared); break;
+    case HEWN_OP_SAMPLED: set(step, in->sum + sum, false, in->sure && in->sum + sum < most_squared); break;
     case HEWN_OP_ZIGZAG: set(step, parameter_of(listing, step), true, in->sure && in->largest < most_squared); break;
     default: set(step, 1, step->op == HEWN_OP_NOISE_CELLULAR, in->sure); /* noise */
     }

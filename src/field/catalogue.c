@@ -289,6 +289,12 @@ const hewn_function hewn_functions[] = {
     {"billow", HEWN_SECTION_NOISE, HEWN_LOOSE, 0, 0, NULL, "the same of 2 |noise| − 1: humps", {OCTAVE_ARGUMENTS},
      call_billow},
 
+    {"mesh_field", HEWN_SECTION_FILES, HEWN_LOOSE, 0, 0, "mesh_field(file [, {cell=, band=, dense=, memory=}])",
+     "the shape in a mesh file, sampled at every `cell` near its surface", {{0}}, NULL},
+    {"heightmap", HEWN_SECTION_FILES, HEWN_BOUND, 1, 0,
+     "heightmap(file, {size= [, height=, dims=, type=, endian=, offset=]})",
+     "the land under the heights in an image: PNG, TIFF, raw samples", {{0}}, NULL},
+
     {"union", HEWN_SECTION_COMBINING, HEWN_EXACT_OUTSIDE, 1, 0, "union(a, ...)",
      "what lies in one of them: the minimum", {FIELD("a"), FIELD("b")}, call_union},
     {"intersection", HEWN_SECTION_COMBINING, HEWN_BOUND, 1, 0, "intersection(a, ...)",
@@ -410,9 +416,9 @@ int hewn_function_arguments(const hewn_function *function, int *needed)
 
 const char *hewn_section_name(hewn_section section)
 {
-    static const char *const names[HEWN_SECTIONS] = {"solids", "flat shapes",  "into space", "periodic surfaces",
-                                                     "noise",  "combining",    "changing",   "paint",
-                                                     "moving", "bending space"};
+    static const char *const names[HEWN_SECTIONS] = {"solids", "flat shapes", "into space",   "periodic surfaces",
+                                                     "noise",  "files",       "combining",    "changing",
+                                                     "paint",  "moving",      "bending space"};
     return names[section];
 }
 

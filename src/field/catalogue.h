@@ -54,6 +54,7 @@ typedef enum hewn_section {
     HEWN_SECTION_SPACE, /* flat shapes made solids */
     HEWN_SECTION_SURFACES,
     HEWN_SECTION_NOISE,
+    HEWN_SECTION_FILES,
     HEWN_SECTION_COMBINING,
     HEWN_SECTION_CHANGING,
     HEWN_SECTION_PAINT,

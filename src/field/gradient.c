@@ -6,6 +6,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "field/internal.h"
+#include "field/sampling.h"
 
 typedef struct dual {
     double v;
@@ -138,14 +139,25 @@ static dual affine(const double *p, const dual *in, double last)
     return chain(sum.v + last, 1, sum);
 }
 
+static dual chain3(double v, const double slopes[3], const dual *in)
+{
+    dual sum = chain2(v, slopes[0], in[0], slopes[1], in[1]), last = chain(0, slopes[2], in[2]);
+    for (int i = 0; i < 3; i++)
+        sum.d[i] += last.d[i];
+    return sum;
+}
+
 static dual noise(const hewn_node_data *node, const dual *in)
 {
     double out[4];
     hewn_noise_slopes(node, (const double[3]){in[0].v, in[1].v, in[2].v}, out);
-    dual sum = chain2(out[0], out[1], in[0], out[2], in[1]), last = chain(0, out[3], in[2]);
-    for (int i = 0; i < 3; i++)
-        sum.d[i] += last.d[i];
-    return sum;
+    return chain3(out[0], out + 1, in);
+}
+
+static dual sampled(const hewn_node_data *node, const dual *in)
+{
+    double slopes[3], value = hewn_sampling_value(node->samples, (const double[3]){in[0].v, in[1].v, in[2].v}, slopes);
+    return chain3(value, slopes, in);
 }
 
 /* A link carries the unit direction away from the nearest edge in place of a derivative. */
@@ -190,6 +202,7 @@ static dual shape(const hewn_node_data *node, const dual *in)
     case HEWN_OP_NOISE_CELLULAR: return noise(node, in);
     case HEWN_OP_EDGE: return edge(node, in);
     case HEWN_OP_OUTLINE: return outline(node, in);
+    case HEWN_OP_SAMPLED: return sampled(node, in);
     default: return constant((double)NAN);
     }
 }

@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "field/sampling.h"
 
 static hewn_node add_variables(hewn_field *field)
 {
@@ -38,6 +39,9 @@ void hewn_field_destroy(hewn_field **field)
 {
     if (!field || !*field)
         return;
+    for (size_t i = 0; i < (*field)->sampling_count; i++)
+        hewn_sampling_destroy(&(*field)->samplings[i]);
+    hewn_free((*field)->samplings);
     hewn_free((*field)->nodes);
     hewn_free((*field)->table);
     hewn_free(*field);
@@ -96,7 +100,7 @@ const hewn_node_data *hewn_field_node(const hewn_field *field, uint32_t id)
 
 /* Nodes compare by their bytes: no padding, and what an operation does not use is set to one value. */
 _Static_assert(sizeof(hewn_node_data) ==
-                   sizeof(hewn_op) + HEWN_MAX_OPERANDS * sizeof(uint32_t) + HEWN_MAX_PARAMETERS * sizeof(double),
+                   sizeof(hewn_op) + HEWN_MAX_OPERANDS * sizeof(uint32_t) + HEWN_MAX_PARAMETERS * sizeof(double) + sizeof(void *),
                "a node has no padding");
 
 static size_t home_slot(const hewn_field *field, const hewn_node_data *data)
@@ -152,6 +156,20 @@ static hewn_node intern(hewn_field *field, const hewn_node_data *data)
     return (hewn_node){(uint32_t)field->count++};
 }
 
+/* Nodes compare by where their samples are, so those must not go before the field does. */
+static hewn_result hold(hewn_field *field, const hewn_sampling *sampling, hewn_error *error)
+{
+    for (size_t i = 0; i < field->sampling_count; i++)
+        if (field->samplings[i] == sampling)
+            return HEWN_OK;
+    void *items = field->samplings;
+    HEWN_TRY(hewn_reserve(&items, &field->sampling_capacity, field->sampling_count + 1, sizeof *field->samplings,
+                          error));
+    field->samplings = items;
+    field->samplings[field->sampling_count++] = hewn_sampling_share(sampling);
+    return HEWN_OK;
+}
+
 hewn_node hewn_field_add_node(hewn_field *field, const hewn_node_data *given)
 {
     if (!field)
@@ -171,6 +189,14 @@ hewn_node hewn_field_add_node(hewn_field *field, const hewn_node_data *given)
     const char *complaint = hewn_op_complaint(data.op, data.parameter);
     if (complaint)
         return hewn_field_refuse(field, HEWN_INVALID_ARGUMENT, "%s: %s", info->name, complaint);
+    if (data.op == HEWN_OP_SAMPLED) {
+        hewn_error error;
+        hewn_result result = given->samples ? hold(field, given->samples, &error)
+                                            : hewn_fail(&error, HEWN_INVALID_ARGUMENT, "sampled: it has no samples");
+        if (result != HEWN_OK)
+            return hewn_field_refuse(field, result, "%s", error.message);
+        data.samples = given->samples;
+    }
     uint32_t existing;
     if (field->count > HEWN_ID_Z && hewn_node_fold(field, &data, &existing))
         return (hewn_node){existing};

@@ -55,6 +55,7 @@
     op(NOISE_CELLULAR, noise_cellular, 3, 1)       /* seed; from 0 to 1 */ \
     op(EDGE, edge, 3, 4)                           /* ax, ay, bx, by: a link of a chain, see below */ \
     op(OUTLINE, outline, 3, 1)                     /* the largest size of a coordinate in the chain */ \
+    op(SAMPLED, sampled, 3, 0)                     /* of its samples, at a place counted in cells from their middle */ \
     op(ZIGZAG, zigzag, 1, 1)                       /* period: the distance from the nearest of its multiples */ \
     op(PAINT, paint, 1, 4)                         /* red, green, blue (linear) or -1, label or -1: see below */ \
     op(BLEND_QUADRATIC, blend_quadratic, 2, 1)     /* size */ \
@@ -92,10 +93,11 @@ typedef struct hewn_op_info {
     uint8_t parameters;
 } hewn_op_info;
 
-/* Whether the operation means something in a chain only. */
+/* Whether the operation is no function of its operands and parameters alone, and no test can make one up: links mean
+ * something in a chain only, samples come from elsewhere. */
 static inline bool hewn_op_is_link(hewn_op op)
 {
-    return op == HEWN_OP_EDGE || op == HEWN_OP_OUTLINE;
+    return op == HEWN_OP_EDGE || op == HEWN_OP_OUTLINE || op == HEWN_OP_SAMPLED;
 }
 
 extern const hewn_op_info hewn_op_infos[HEWN_OP_COUNT];
@@ -107,6 +109,7 @@ typedef struct hewn_node_data {
     hewn_op op;
     uint32_t operand[HEWN_MAX_OPERANDS];   /* node ids, all smaller than this node's own; unused ones are 0xFFFFFFFF */
     double parameter[HEWN_MAX_PARAMETERS]; /* unused ones are 0 */
+    const struct hewn_sampling *samples;   /* of SAMPLED, else NULL; the field holds it as long as the node */
 } hewn_node_data;
 
 /* How many nodes the field has; ids are below it. */

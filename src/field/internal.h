@@ -16,6 +16,9 @@ struct hewn_field {
     size_t capacity;
     uint32_t *table; /* open addressing over ids, HEWN_NO_ID where free; size a power of two */
     size_t table_size;
+    struct hewn_sampling **samplings; /* that nodes have */
+    size_t sampling_count;
+    size_t sampling_capacity;
     hewn_error failure; /* the first one; its code is HEWN_OK while there is none */
     uint32_t root;
 };

@@ -5,6 +5,7 @@
 
 #include "field/internal.h"
 #include "field/interval.h"
+#include "field/sampling.h"
 
 static hewn_interval less(hewn_interval a, double b)
 {
@@ -151,6 +152,7 @@ hewn_interval hewn_interval_shape(const hewn_node_data *node, const hewn_interva
     case HEWN_OP_NOISE_CELLULAR: return hewn_noise_interval(node, in);
     case HEWN_OP_EDGE: return edge(node, in);
     case HEWN_OP_OUTLINE: return outline(node, in);
+    case HEWN_OP_SAMPLED: return hewn_sampling_bound(node->samples, in);
     default: return hewn_interval_all();
     }
 }

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "field/internal.h"
+#include "field/sampling.h"
 
 static double least(double a, double b)
 {
@@ -129,6 +130,7 @@ static double shape(const hewn_node_data *node, const double *in)
     case HEWN_OP_NOISE_CELLULAR: return hewn_noise_point(node, in);
     case HEWN_OP_EDGE: return edge(p, in);
     case HEWN_OP_OUTLINE: return outline(in);
+    case HEWN_OP_SAMPLED: return hewn_sampling_value(node->samples, in, NULL);
     default: return (double)NAN;
     }
 }

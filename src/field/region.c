@@ -8,6 +8,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "field/internal.h"
+#include "field/sampling.h"
 
 typedef struct question {
     uint32_t step;
@@ -177,6 +178,12 @@ static rule outline_rule(const graph_view *view, const hewn_step *step, double l
 
 static void half_sizes(const hewn_node_data *node, double half[3]);
 
+/* How much a shape's box grows with the level. Samples may be steeper than distances, so their box does not shrink. */
+static double grown_by(const hewn_node_data *node, double level)
+{
+    return node->op == HEWN_OP_SAMPLED ? fmax(level, 0) : level;
+}
+
 /* A shape whose coordinates are no affine ones: each of them lies in the shape's box, grown by the level. */
 static rule shape_rule(const graph_view *view, const hewn_step *step, double level)
 {
@@ -188,6 +195,7 @@ static rule shape_rule(const graph_view *view, const hewn_step *step, double lev
         return (rule){RULE_LEAF, 0, {{0}}};
     rule out = unknown;
     half_sizes(step->node, half);
+    level = grown_by(step->node, level);
     for (int i = 0; i < 3; i++) {
         add_question(&out, ask(step->in[i], false, half[i] + level));
         add_question(&out, ask(step->in[i], true, -half[i] - level));
@@ -207,7 +215,7 @@ static rule affine_rule(const graph_view *view, const hewn_step *step, bool abov
 static rule rule_of(const graph_view *view, const hewn_step *step, bool above, double level)
 {
     hewn_op op = step->node->op;
-    if (op >= HEWN_OP_SPHERE && op <= HEWN_OP_CONE)
+    if ((op >= HEWN_OP_SPHERE && op <= HEWN_OP_CONE) || (op == HEWN_OP_SAMPLED && !step->node->samples->endless))
         return above ? unknown : shape_rule(view, step, level);
     switch (op) {
     case HEWN_OP_NEG: return ask_one(ask(step->in[0], !above, -level));
@@ -275,6 +283,10 @@ static void half_sizes(const hewn_node_data *node, double half[3])
     case HEWN_OP_CYLINDER: along = p[1]; break;
     case HEWN_OP_CAPSULE: along = p[0] + p[1]; break;
     case HEWN_OP_CONE: across = fmax(p[0], p[1]), along = p[2]; break;
+    case HEWN_OP_SAMPLED:
+        for (int i = 0; i < 3; i++)
+            half[i] = 0.5 * node->samples->cells[i];
+        return;
     default: /* BOX, ROUNDED_BOX */
         for (int i = 0; i < 3; i++)
             half[i] = p[i] + (node->op == HEWN_OP_ROUNDED_BOX ? p[3] : 0);
@@ -350,6 +362,7 @@ static hewn_region leaf(const hewn_field *field, const hewn_node_data *node, boo
     /* The distance is exact outside and 1-Lipschitz inside: where it is at most the level (of either sign) lies within
      * the shape's box grown by the level. */
     half_sizes(node, half);
+    level = grown_by(node, level);
     for (int i = 0; i < 3; i++) {
         half[i] += level;
         if (half[i] < 0)

@@ -57,6 +57,8 @@ struct hewn_device {
     VkPipelineCacheHeaderVersionOne pipeline_header; /* how the driver's data must begin */
     hewn_cache cache;
     uint64_t bytes, peak_bytes;
+    uint64_t most_bytes;    /* no more may be in use; 0: no limit */
+    uint64_t refused_bytes; /* what the last buffer would have brought it to that was refused for that; 0: none was */
     struct hewn_commands commands; /* the one recording, used again and again */
 };
 

@@ -400,6 +400,8 @@ static hewn_result check_positions(const hewn_writing *job, const hewn_glb_plan 
         if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])))
             return hewn_fail(error, HEWN_LIMIT, "vertex %llu lies too far out for GLB's floats in metres",
                              (unsigned long long)v);
+        if ((v + 1) % (16 * HEWN_WRITE_BLOCK) == 0)
+            HEWN_TRY(hewn_progress_report(job->progress, "write", 0, error));
     }
     return HEWN_OK;
 }

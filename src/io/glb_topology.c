@@ -33,19 +33,44 @@ static uint64_t hash_key(const uint32_t key[3])
     return hash ^ hash >> 31;
 }
 
-static hewn_result find_equal(const hewn_writing *job, const hewn_glb_plan *plan, uint32_t *slots, size_t mask,
-                              bool *out, hewn_error *error)
+/* A vertex and the high bits of its hash, so that only those that are likely to be equal are read again. */
+typedef struct slot {
+    uint32_t vertex, hash;
+} slot;
+
+/* What memory may be spent on slots: where there are more vertices, those of some hashes are compared at a time. */
+enum { MOST_SLOTS = 1 << 22 };
+
+typedef struct slot_table {
+    slot *slots;
+    size_t count, used; /* of which at least one stays free */
+} slot_table;
+
+/* Looks at the vertices whose hash modulo `rounds` is `round`. Ends early where the table is full. */
+static hewn_result find_equal(const hewn_writing *job, const hewn_glb_plan *plan, slot_table *table, uint64_t round,
+                              uint64_t rounds, bool *out, hewn_error *error)
 {
-    for (uint64_t v = 0; v < job->vertex_count && !*out; v++) {
+    slot *slots = table->slots;
+    size_t mask = table->count - 1;
+    memset(slots, 0xff, table->count * sizeof *slots);
+    table->used = 0;
+    for (uint64_t v = 0; v < job->vertex_count && !*out && table->used < mask; v++) {
         uint32_t key[3], other[3];
         get_key(job, plan, v, key);
-        size_t at = (size_t)hash_key(key) & mask;
-        for (; slots[at] != HEWN_NONE && !*out; at = (at + 1) & mask) {
-            get_key(job, plan, slots[at], other);
+        uint64_t hash = hash_key(key);
+        HEWN_TRY(look_up(job, v, error));
+        if (hash % rounds != round)
+            continue;
+        uint64_t mixed = hash / rounds;
+        size_t at = (size_t)mixed & mask;
+        for (; slots[at].vertex != HEWN_NONE && !*out; at = (at + 1) & mask) {
+            if (slots[at].hash != (uint32_t)(hash >> 32))
+                continue;
+            get_key(job, plan, slots[at].vertex, other);
             *out = memcmp(key, other, sizeof key) == 0;
         }
-        slots[at] = (uint32_t)v;
-        HEWN_TRY(look_up(job, v, error));
+        slots[at] = (slot){(uint32_t)v, (uint32_t)(hash >> 32)};
+        table->used++;
     }
     return HEWN_OK;
 }
@@ -53,15 +78,24 @@ static hewn_result find_equal(const hewn_writing *job, const hewn_glb_plan *plan
 static hewn_result has_equal_positions(const hewn_writing *job, const hewn_glb_plan *plan, bool *out, hewn_error *error)
 {
     size_t count = 16;
-    while (count < job->vertex_count + job->vertex_count / 2)
+    uint64_t needed = job->vertex_count + job->vertex_count / 2, rounds = needed / MOST_SLOTS + 1;
+    while (count < needed / rounds + needed / rounds / 16)
         count *= 2;
-    uint32_t *slots = hewn_alloc(count, sizeof *slots);
-    if (!slots)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
-    memset(slots, 0xff, count * sizeof *slots);
+    slot_table table = {NULL, count / 2, 0};
+    hewn_result result = HEWN_OK;
     *out = false;
-    hewn_result result = find_equal(job, plan, slots, count - 1, out, error);
-    hewn_free(slots);
+    for (uint64_t round = 0; round < rounds && result == HEWN_OK && !*out;) {
+        bool full = !table.slots || table.used == table.count - 1; /* never yet but where hashes are far from even */
+        slot *slots = full ? hewn_realloc(table.slots, 2 * table.count, sizeof *slots) : table.slots;
+        if (!slots) {
+            hewn_free(table.slots);
+            return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
+        }
+        table = (slot_table){slots, full ? 2 * table.count : table.count, 0};
+        result = find_equal(job, plan, &table, round, rounds, out, error);
+        round += table.used < table.count - 1;
+    }
+    hewn_free(table.slots);
     return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/progress.h"
 #include "io/bytes.h"
 #include "io/glb_plan.h"
 #include "io/stream.h"
@@ -168,7 +169,8 @@ static hewn_result fits(const hewn_writing *job, hewn_error *error)
 
 /* --- the head ----------------------------------------------------------------------------------------------------- */
 
-static void find_bounds(const hewn_writing *job, const hewn_glb_plan *plan, hewn_gltf_desc *desc)
+static hewn_result find_bounds(const hewn_writing *job, const hewn_glb_plan *plan, hewn_gltf_desc *desc,
+                               hewn_error *error)
 {
     for (uint64_t v = 0; v < job->vertex_count; v++) {
         float p[3];
@@ -178,7 +180,10 @@ static void find_bounds(const hewn_writing *job, const hewn_glb_plan *plan, hewn
             desc->lo[axis] = v == 0 || value < desc->lo[axis] ? value : desc->lo[axis];
             desc->hi[axis] = v == 0 || value > desc->hi[axis] ? value : desc->hi[axis];
         }
+        if ((v + 1) % (16 * HEWN_WRITE_BLOCK) == 0)
+            HEWN_TRY(hewn_progress_report(job->progress, "write", 0, error));
     }
+    return HEWN_OK;
 }
 
 /* The file's header, the JSON chunk and the binary chunk's header. */
@@ -231,7 +236,7 @@ static hewn_result compose(const hewn_writing *job, const hewn_glb_plan *plan, h
                            .merge_count = plan->merge_count,
                            .conversion = hewn_target_changes(&plan->conversion) ? texts[1].bytes : NULL,
                            .space = job->space};
-    find_bounds(job, plan, &desc);
+    HEWN_TRY(find_bounds(job, plan, &desc, error));
     return hewn_gltf_compose(&desc, json, error);
 }
 

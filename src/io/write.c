@@ -75,27 +75,38 @@ static hewn_result check_size(const hewn_writing *job, const hewn_format_writer 
     return writer->fits ? writer->fits(job, error) : HEWN_OK;
 }
 
-static hewn_result check_triangles(const hewn_triangles *mesh, hewn_error *error)
+/* A look at the progress callback now and then. */
+static hewn_result look_up(const hewn_progress *progress, uint64_t done, hewn_error *error)
+{
+    return done % (16 * HEWN_WRITE_BLOCK) == 0 ? hewn_progress_report(progress, "write", 0, error) : HEWN_OK;
+}
+
+static hewn_result check_triangles(const hewn_triangles *mesh, const hewn_progress *progress, hewn_error *error)
 {
     if ((mesh->vertex_count > 0 && !mesh->positions) || (mesh->triangle_count > 0 && !mesh->indices))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "triangles without positions or indices");
-    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++)
+    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++) {
         if (mesh->indices[i] >= mesh->vertex_count)
             return hewn_fail(error, HEWN_BAD_INPUT, "triangle %llu names vertex %u, but there are %llu vertices",
                              (unsigned long long)(i / 3), mesh->indices[i], (unsigned long long)mesh->vertex_count);
-    for (uint64_t i = 0; i < 3 * mesh->vertex_count; i++)
+        HEWN_TRY(look_up(progress, i + 1, error));
+    }
+    for (uint64_t i = 0; i < 3 * mesh->vertex_count; i++) {
         if (!isfinite(mesh->positions[i]))
             return hewn_fail(error, HEWN_BAD_INPUT, "the position of vertex %llu is not finite",
                              (unsigned long long)(i / 3));
+        HEWN_TRY(look_up(progress, i + 1, error));
+    }
     return HEWN_OK;
 }
 
 /* Numbers in files are finite: readers elsewhere take anything else ill. */
-static hewn_result check_channel(const hewn_channel *channel, uint64_t count, hewn_error *error)
+static hewn_result check_channel(const hewn_channel *channel, uint64_t count, const hewn_progress *progress,
+                                 hewn_error *error)
 {
     bool real = channel->info.scalar == HEWN_SCALAR_FLOAT || channel->info.scalar == HEWN_SCALAR_DOUBLE;
     uint32_t components = channel->info.components;
-    for (uint64_t i = 0; real && i < count; i++)
+    for (uint64_t i = 0; real && i < count; i++) {
         for (uint32_t k = 0; k < components; k++)
             if (!isfinite(hewn_channel_number(channel, i, k)))
                 return hewn_fail(error, HEWN_BAD_INPUT, "\"%s\" of %s %llu is not finite", channel->info.name,
@@ -103,6 +114,8 @@ static hewn_result check_channel(const hewn_channel *channel, uint64_t count, he
                                  : channel->info.domain == HEWN_DOMAIN_CORNER ? "corner"
                                                                               : "face",
                                  (unsigned long long)i);
+        HEWN_TRY(look_up(progress, i + 1, error));
+    }
     return HEWN_OK;
 }
 
@@ -112,7 +125,7 @@ static hewn_result check_channels(const hewn_writing *job, hewn_error *error)
                                [HEWN_DOMAIN_CORNER] = job->corner_count,
                                [HEWN_DOMAIN_FACE] = job->face_count};
     for (uint32_t i = 0; i < job->channel_count; i++)
-        HEWN_TRY(check_channel(&job->channels[i], counts[job->channels[i].info.domain], error));
+        HEWN_TRY(check_channel(&job->channels[i], counts[job->channels[i].info.domain], job->progress, error));
     return HEWN_OK;
 }
 
@@ -214,7 +227,7 @@ hewn_result hewn_triangles_write(const hewn_triangles *triangles, const char *pa
                         .progress = wanted->progress};
     uint32_t *quads = NULL;
     HEWN_TRY(check_size(&job, writer, error));
-    HEWN_TRY(check_triangles(triangles, error));
+    HEWN_TRY(check_triangles(triangles, wanted->progress, error));
     if (wanted->quads && triangles->paired && !writer->triangles)
         HEWN_TRY(take_quads(triangles, &quads, &job, error));
     hewn_result result = prepare_and_write(&job, writer, path, wanted, error);

@@ -91,7 +91,7 @@ hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_
                              hewn_bricks *out, hewn_error *error)
 {
     if (hewn_code_is_listed(extractor->code))
-        return hewn_bricks_cull_lists(extractor, grid, workspace, out, error);
+        return hewn_bricks_cull_lists(extractor, grid, NULL, workspace, out, error);
     cull_plan plan = {0};
     lay_levels(grid, &plan);
     HEWN_TRY(take_buffers(&plan, workspace, error));

@@ -10,8 +10,8 @@
 #include "shared/lists.h"
 
 typedef struct list_level {
-    uint32_t tested, kept;
-    uint32_t size; /* cells along a block's side */
+    uint32_t number, tested, kept; /* 0 is the coarsest */
+    uint32_t size;                 /* cells along a block's side */
     uint64_t choice_words;
     hewn_buffer *states, *flags, *lengths, *choices;
     hewn_buffer *list, *origins, *ranges, *instructions;
@@ -20,6 +20,7 @@ typedef struct list_level {
 typedef struct list_run {
     const hewn_extractor *extractor;
     const struct hewn_grid *grid;
+    const hewn_region *region; /* NULL: all of the grid */
     hewn_workspace *workspace;
     hewn_buffer *totals, *results;
     uint32_t top[3];
@@ -48,6 +49,18 @@ static hewn_result take_tested(list_run *run, hewn_buffer **scratch, hewn_error 
 static uint64_t address_of(const hewn_buffer *buffer)
 {
     return buffer ? buffer->address : 0;
+}
+
+static void record_clip(const list_run *run, hewn_commands *commands)
+{
+    const list_level *level = &run->level;
+    hewn_region_level tested = {.level = level->number,
+                                .tested = level->tested,
+                                .parents = address_of(run->above.list),
+                                .states = level->states->address,
+                                .flags = level->flags->address};
+    if (run->region)
+        hewn_region_record(run->region, run->extractor->clip, &tested, commands);
 }
 
 static void record_choose(const list_run *run, hewn_commands *commands)
@@ -143,6 +156,7 @@ static hewn_result choose(list_run *run, uint32_t totals[4], hewn_error *error)
     HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
     hewn_commands_fill(commands, level->lengths, 0, level->lengths->size, 0);
     record_choose(run, commands);
+    record_clip(run, commands);
     if (!run->extractor->on_host)
         record_count(run, scratch, commands);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
@@ -177,9 +191,10 @@ static hewn_result make_lists(list_run *run, uint64_t instructions, hewn_error *
 }
 
 hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct hewn_grid *grid,
-                                   hewn_workspace *workspace, hewn_bricks *out, hewn_error *error)
+                                   const hewn_region *region, hewn_workspace *workspace, hewn_bricks *out,
+                                   hewn_error *error)
 {
-    list_run run = {.extractor = extractor, .grid = grid, .workspace = workspace, .at_top = true};
+    list_run run = {.extractor = extractor, .grid = grid, .region = region, .workspace = workspace, .at_top = true};
     uint32_t size = hewn_grid_levels(grid, &out->levels, run.top);
     uint64_t count = (uint64_t)run.top[0] * run.top[1] * run.top[2];
     uint64_t words = (hewn_code_instruction_count(extractor->code) + 15) / 16 * count;
@@ -190,7 +205,7 @@ hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct
         uint32_t totals[4] = {0};
         if (count > UINT32_MAX / 4)
             return hewn_fail(error, HEWN_LIMIT, "%llu blocks are too many to cull at once", (unsigned long long)count);
-        run.level = (list_level){.tested = (uint32_t)count, .size = size, .choice_words = words};
+        run.level = (list_level){.number = i, .tested = (uint32_t)count, .size = size, .choice_words = words};
         HEWN_TRY(choose(&run, totals, error));
         run.level.kept = totals[0];
         if (totals[0] == 0)

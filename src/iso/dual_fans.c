@@ -11,28 +11,28 @@ typedef struct fanning {
     hewn_surface *surface;
     hewn_buffer *buffers; /* positions, normals, indices */
     hewn_buffer *ranks;
+    uint64_t first, quads; /* that may become fans: a part's own */
     uint32_t count;
 } fanning;
 
 static void record_fans(const fanning *run, bool makes, hewn_commands *commands)
 {
-    uint64_t quads = run->surface->triangle_count / 2;
-    struct hewn_dual_fan_push push = {.count = (uint32_t)quads,
+    struct hewn_dual_fan_push push = {.count = (uint32_t)run->quads,
                                       .makes = makes,
                                       .vertices = (uint32_t)run->surface->vertex_count,
-                                      .crossings = run->kept->crossings->address,
+                                      .crossings = run->kept->crossings->address + 4 * run->first,
                                       .ranks = run->ranks->address,
                                       .points = run->kept->points->address,
                                       .point_normals = run->kept->normals->address,
                                       .positions = run->buffers[0].address,
                                       .normals = run->buffers[1].address,
-                                      .indices = run->buffers[2].address};
-    hewn_commands_dispatch(commands, run->extractor->dual.fans, &push, NULL, hewn_groups_for(quads, 64));
+                                      .indices = run->buffers[2].address + 24 * run->first};
+    hewn_commands_dispatch(commands, run->extractor->dual.fans, &push, NULL, hewn_groups_for(run->quads, 64));
 }
 
 static hewn_result count_fans(fanning *run, hewn_workspace *workspace, hewn_error *error)
 {
-    uint64_t quads = run->surface->triangle_count / 2;
+    uint64_t quads = run->quads;
     hewn_buffer *total, *result, *scratch;
     HEWN_TRY(hewn_workspace_take(workspace, "fans", 4 * quads, HEWN_BUFFER_DEVICE, &run->ranks, error));
     HEWN_TRY(hewn_workspace_take(workspace, "fans in all", 8, HEWN_BUFFER_DEVICE, &total, error));
@@ -81,6 +81,11 @@ hewn_result hewn_dual_add_fans(const hewn_extractor *extractor, const hewn_dual_
 {
     fanning run = {.extractor = extractor, .kept = kept, .surface = surface, .buffers = buffers};
     hewn_commands *commands;
+    hewn_own own = hewn_surface_own(surface);
+    run.first = own.triangles[0] / 2;
+    run.quads = own.triangles[1] / 2 - run.first;
+    if (run.quads == 0)
+        return HEWN_OK;
     HEWN_TRY(count_fans(&run, workspace, error));
     if (run.count == 0)
         return HEWN_OK;

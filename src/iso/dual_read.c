@@ -6,37 +6,20 @@
 #include "base/error.h"
 #include "iso/extractor.h"
 
-static hewn_result read_buffer(hewn_device *device, const hewn_buffer *buffer, hewn_workspace *workspace,
-                               const void **out, hewn_error *error)
-{
-    hewn_buffer *home;
-    hewn_commands *commands;
-    *out = buffer->mapped;
-    if (buffer->mapped)
-        return HEWN_OK;
-    HEWN_TRY(hewn_workspace_take(workspace, "a surface on the host", buffer->size, HEWN_BUFFER_READBACK, &home, error));
-    HEWN_TRY(hewn_commands_begin(device, &commands, error));
-    hewn_commands_copy(commands, buffer, 0, home, 0, buffer->size);
-    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
-    *out = home->mapped;
-    return HEWN_OK;
-}
-
 /* What is read, as the device has it. */
 typedef struct raw_surface {
     const uint32_t *bricks, *records, *crossings, *indices;
     const float *points, *point_normals, *positions, *normals;
 } raw_surface;
 
-static hewn_result read_all(const hewn_extractor *extractor, const hewn_bricks *bricks, const hewn_dual_hermite *kept,
-                            const hewn_buffer buffers[3], hewn_workspace *workspace, raw_surface *raw,
-                            hewn_error *error)
+static hewn_result read_all(const hewn_bricks *bricks, const hewn_dual_hermite *kept, const hewn_buffer buffers[3],
+                            hewn_workspace *workspace, raw_surface *raw, hewn_error *error)
 {
     const hewn_buffer *from[] = {bricks->list, kept->records, kept->crossings, &buffers[2],
                                  kept->points, kept->normals, &buffers[0],     &buffers[1]};
     const void *at[8];
     for (int i = 0; i < 8; i++)
-        HEWN_TRY(read_buffer(extractor->device, from[i], workspace, &at[i], error));
+        HEWN_TRY(hewn_workspace_read(workspace, from[i], 0, from[i]->size, &at[i], error));
     *raw = (raw_surface){at[0], at[1], at[2], at[3], at[4], at[5], at[6], at[7]};
     return HEWN_OK;
 }
@@ -94,7 +77,7 @@ hewn_result hewn_dual_read(const hewn_extractor *extractor, const struct hewn_gr
 {
     raw_surface raw;
     *out = (hewn_dual_reading){0};
-    HEWN_TRY(read_all(extractor, bricks, kept, buffers, workspace, &raw, error));
+    HEWN_TRY(read_all(bricks, kept, buffers, workspace, &raw, error));
     out->surface.vertex_count = surface->vertex_count;
     out->surface.quad_count = surface->triangle_count / 2;
     hewn_result result = take_arrays(out, error);

@@ -182,17 +182,19 @@ typedef struct emission {
     const struct hewn_grid *grid;
     const hewn_bricks *bricks;
     const hewn_surface *surface;
-    const hewn_buffer *buffers;      /* positions, normals, indices */
-    hewn_buffer *points, *normals;   /* of crossings */
-    hewn_buffer *passed;             /* edges that each vertex's loop passes */
-    hewn_buffer *summary, *results;  /* the mesh's; behind it that of the crossings */
+    const hewn_buffer *buffers;     /* positions, normals, indices */
+    hewn_buffer *points, *normals;  /* of crossings */
+    hewn_buffer *passed;            /* edges that each vertex's loop passes */
+    hewn_buffer *summary, *results; /* the mesh's, that of the crossings, and one for what is not a part's own */
+    hewn_own own;
     hewn_buffer *records, *crossing; /* of vertices, of quads: where they are kept */
 } emission;
 
 static hewn_result take_emission(emission *run, uint32_t keep, hewn_workspace *workspace, hewn_error *error)
 {
     uint64_t points = 12 * run->surface->crossing_count, quads = run->surface->triangle_count / 2;
-    uint64_t summary = (uint64_t)2 * 4 * HEWN_SUMMARY_WORDS;
+    uint64_t summary = (uint64_t)3 * 4 * HEWN_SUMMARY_WORDS;
+    points += 12; /* what nobody owns at the end of a part is numbered up to one past the last */
     const struct {
         const char *what;
         uint64_t bytes;
@@ -232,36 +234,54 @@ static void record_spread(const emission *run, hewn_commands *commands)
                            hewn_groups_for(run->bricks->count, 32));
 }
 
+/* Vertices and quads need crossings of their own brick and of those after it. Those of a part's own bricks are summed
+ * up, the others are not. */
+static void record_crossings(const emission *run, hewn_commands *commands)
+{
+    const hewn_own *own = &run->own;
+    const uint64_t ends[3] = {own->crossings[0], own->crossings[1], run->surface->crossing_count};
+    for (int i = 0; i < 2; i++) {
+        uint64_t summary = (uint64_t)4 * HEWN_SUMMARY_WORDS * (i == 0 ? 1 : 2);
+        hewn_crossings crossings = {.first = ends[i],
+                                    .end = ends[i + 1],
+                                    .dual = true,
+                                    .bases = own->bases[i],
+                                    .positions = run->points,
+                                    .normals = run->normals,
+                                    .summary = run->summary->address + summary};
+        hewn_crossings_record(run->extractor, run->grid, run->bricks, &crossings, commands);
+    }
+}
+
+/* Quads name vertices of their own brick and of those after it. */
 static void record_vertices(const emission *run, hewn_method method, hewn_commands *commands)
 {
     const hewn_surface *surface = run->surface;
     const hewn_buffer *uniforms = hewn_code_uniforms(run->extractor->code);
-    hewn_crossings crossings = {.count = surface->crossing_count,
-                                .dual = true,
-                                .bases = surface->crossing_bases,
-                                .positions = run->points,
-                                .normals = run->normals,
-                                .summary = run->summary->address + (uint64_t)4 * HEWN_SUMMARY_WORDS};
-    hewn_crossings_record(run->extractor, run->grid, run->bricks, &crossings, commands);
-    struct hewn_dual_vertex_push vertices = {.grid = *run->grid,
-                                             .count = (uint32_t)surface->vertex_count,
-                                             .bricks = run->bricks->list->address,
-                                             .links = surface->links->address,
-                                             .edges = surface->edges->address,
-                                             .points = run->points->address,
-                                             .point_normals = run->normals->address,
-                                             .positions = run->buffers[0].address,
-                                             .normals = run->buffers[1].address,
-                                             .summary = run->summary->address};
     const hewn_dual_programs *programs = &run->extractor->dual;
-    hewn_commands_dispatch(commands, method == HEWN_METHOD_NETS ? programs->nets : programs->dc, &vertices, uniforms,
-                           hewn_groups_for(surface->vertex_count, 64));
+    const uint64_t ends[3] = {run->own.vertices[0], run->own.vertices[1], surface->vertex_count};
+    for (int i = 0; i < 2; i++) {
+        uint64_t count = ends[i + 1] - ends[i], summary = (uint64_t)4 * HEWN_SUMMARY_WORDS * (i == 0 ? 0 : 2);
+        struct hewn_dual_vertex_push vertices = {.grid = *run->grid,
+                                                 .count = (uint32_t)count,
+                                                 .bricks = run->bricks->list->address,
+                                                 .links = surface->links->address,
+                                                 .edges = surface->edges->address,
+                                                 .points = run->points->address,
+                                                 .point_normals = run->normals->address,
+                                                 .positions = run->buffers[0].address + 12 * ends[i],
+                                                 .normals = run->buffers[1].address + 12 * ends[i],
+                                                 .summary = run->summary->address + summary};
+        if (count > 0)
+            hewn_commands_dispatch(commands, method == HEWN_METHOD_NETS ? programs->nets : programs->dc, &vertices,
+                                   uniforms, hewn_groups_for(count, 64));
+    }
 }
 
 static void record_quads(const emission *run, uint32_t keep, hewn_commands *commands)
 {
     const hewn_surface *surface = run->surface;
-    uint64_t quads = surface->triangle_count / 2;
+    uint64_t first = run->own.triangles[0] / 2, quads = run->own.triangles[1] / 2 - first;
     struct hewn_dual_quad_push push = {.grid = *run->grid,
                                        .count = (uint32_t)quads,
                                        .keep = keep,
@@ -272,9 +292,10 @@ static void record_quads(const emission *run, uint32_t keep, hewn_commands *comm
                                        .passed = run->passed->address,
                                        .points = run->points->address,
                                        .positions = run->buffers[0].address,
-                                       .indices = run->buffers[2].address,
-                                       .crossings = run->crossing->address};
-    hewn_commands_dispatch(commands, run->extractor->dual.quads, &push, NULL, hewn_groups_for(quads, 64));
+                                       .indices = run->buffers[2].address + 24 * first,
+                                       .crossings = run->crossing->address + (keep != HEWN_KEEP_NONE ? 4 * first : 0)};
+    if (quads > 0)
+        hewn_commands_dispatch(commands, run->extractor->dual.quads, &push, NULL, hewn_groups_for(quads, 64));
 }
 
 static void read_summary(const uint32_t *words, hewn_emission *out)
@@ -295,12 +316,14 @@ hewn_result hewn_dual_emit(const hewn_extractor *extractor, const struct hewn_gr
 {
     emission run = {.extractor = extractor, .grid = grid, .bricks = bricks, .surface = surface, .buffers = buffers};
     hewn_commands *commands;
+    run.own = hewn_surface_own(surface);
     HEWN_TRY(take_emission(&run, keep, workspace, error));
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, run.summary, 0, run.summary->size, 0);
     record_spread(&run, commands);
     if (keep == HEWN_KEEP_ALL)
         hewn_commands_copy(commands, &buffers[0], 0, run.records, 0, buffers[0].size);
+    record_crossings(&run, commands);
     record_vertices(&run, method, commands);
     record_quads(&run, keep, commands);
     hewn_commands_copy(commands, run.summary, 0, run.results, 0, run.summary->size);

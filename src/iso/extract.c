@@ -6,8 +6,9 @@
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "gpu/device.h"
 #include "iso/adaptive.h"
-#include "iso/extractor.h"
+#include "iso/extraction.h"
 
 /* Owns what a finished mesh lies in where that is the device's memory. */
 typedef struct mapped_mesh {
@@ -25,17 +26,8 @@ static void release_mapped(void *owner)
 
 /* --- stages ------------------------------------------------------------------------------------------------------ */
 
-typedef struct extraction {
-    const hewn_extractor *extractor;
-    const hewn_extract_desc *desc;
-    hewn_method method;
-    struct hewn_grid grid;
-    hewn_workspace workspace;
-    hewn_extract_stats *stats;
-    double begin;
-} extraction;
-
-static hewn_result stage(extraction *run, const char *name, double begin, double end, double share, hewn_error *error)
+hewn_result hewn_extraction_stage(hewn_extraction *run, const char *name, double begin, double end, double share,
+                                  hewn_error *error)
 {
     hewn_extract_stats *stats = run->stats;
     stats->stages[stats->stage_count++] = (hewn_extract_stage){name, begin - run->begin, end - run->begin};
@@ -48,7 +40,7 @@ static hewn_result stage(extraction *run, const char *name, double begin, double
 /* --- what lies between samples -------------------------------------------------------------------------------------
  */
 
-static void note_suspects(const extraction *run, const hewn_suspects *suspects)
+void hewn_extraction_note_suspects(const hewn_extraction *run, const hewn_suspects *suspects)
 {
     hewn_extract_stats *stats = run->stats;
     stats->suspect_cells = suspects->cells;
@@ -60,21 +52,21 @@ static void note_suspects(const extraction *run, const hewn_suspects *suspects)
     }
 }
 
-static hewn_result look_between_samples(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface,
+static hewn_result look_between_samples(hewn_extraction *run, const hewn_bricks *bricks, const hewn_surface *surface,
                                         hewn_error *error)
 {
     double begin = hewn_clock_now();
     hewn_suspects suspects;
     HEWN_TRY(hewn_suspects_find(run->extractor, &run->grid, bricks, surface, &run->workspace, &suspects, error));
-    note_suspects(run, &suspects);
-    return stage(run, "suspects", begin, hewn_clock_now(), 0.85, error);
+    hewn_extraction_note_suspects(run, &suspects);
+    return hewn_extraction_stage(run, "suspects", begin, hewn_clock_now(), 0.85, error);
 }
 
 /* --- no surface: why --------------------------------------------------------------------------------------------- */
 
 #define LATTICE 9
 
-static hewn_result explain_empty(extraction *run, hewn_error *error)
+hewn_result hewn_extraction_explain_empty(hewn_extraction *run, hewn_error *error)
 {
     float points[LATTICE * LATTICE * LATTICE * 3], values[LATTICE * LATTICE * LATTICE];
     const hewn_box *box = &run->stats->bounds;
@@ -155,7 +147,7 @@ static void note_emission(hewn_extract_stats *stats, const hewn_emission *emissi
 }
 
 /* Merging wants quads, and takes what they were made of. */
-static hewn_result emit_dual(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, mapped_mesh *mesh,
+static hewn_result emit_dual(hewn_extraction *run, const hewn_bricks *bricks, hewn_surface *surface, mapped_mesh *mesh,
                              hewn_dual_hermite *kept, hewn_emission *emission, hewn_error *error)
 {
     uint32_t keep = run->desc->adaptive > 0 ? HEWN_KEEP_ALL : run->desc->quads ? HEWN_KEEP_NONE : HEWN_KEEP_FANS;
@@ -167,7 +159,7 @@ static hewn_result emit_dual(extraction *run, const hewn_bricks *bricks, hewn_su
     return HEWN_OK;
 }
 
-static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, mapped_mesh *mesh,
+static hewn_result emit_into(hewn_extraction *run, const hewn_bricks *bricks, hewn_surface *surface, mapped_mesh *mesh,
                              hewn_dual_hermite *kept, hewn_error *error)
 {
     static const char *const what[3] = {"positions", "normals", "indices"};
@@ -183,11 +175,11 @@ static hewn_result emit_into(extraction *run, const hewn_bricks *bricks, hewn_su
                                    &emission, error));
     note_emission(run->stats, &emission);
     run->stats->left_bounds = emission.capped_crossings > 0;
-    return emission.capped_crossings == surface->crossing_count ? explain_empty(run, error) : HEWN_OK;
+    return emission.capped_crossings == surface->crossing_count ? hewn_extraction_explain_empty(run, error) : HEWN_OK;
 }
 
 /* Whether an open surface reaches the bounds: it does where a vertex lies on them. */
-static bool touches_bounds(const extraction *run, const hewn_triangles *triangles)
+static bool touches_bounds(const hewn_extraction *run, const hewn_triangles *triangles)
 {
     for (uint64_t i = 0; i < 3 * triangles->vertex_count; i++) {
         float at = triangles->positions[i];
@@ -198,7 +190,7 @@ static bool touches_bounds(const extraction *run, const hewn_triangles *triangle
 }
 
 /* Merges what the tolerance allows, on the host. */
-static hewn_result collapse(extraction *run, const hewn_bricks *bricks, const hewn_surface *surface,
+static hewn_result collapse(hewn_extraction *run, const hewn_bricks *bricks, const hewn_surface *surface,
                             const mapped_mesh *mesh, const hewn_dual_hermite *kept, hewn_triangles *out,
                             hewn_error *error)
 {
@@ -209,7 +201,7 @@ static hewn_result collapse(extraction *run, const hewn_bricks *bricks, const he
     HEWN_TRY(hewn_dual_read(run->extractor, &run->grid, bricks, surface, kept, mesh->buffers, &run->workspace, &reading,
                             error));
     double read = hewn_clock_now();
-    hewn_result result = stage(run, "read_back", start, read, 0.9, error);
+    hewn_result result = hewn_extraction_stage(run, "read_back", start, read, 0.9, error);
     if (result == HEWN_OK)
         result =
             hewn_adaptive_collapse(&reading.surface, run->desc->adaptive, run->desc->progress, out, &merged, error);
@@ -221,17 +213,17 @@ static hewn_result collapse(extraction *run, const hewn_bricks *bricks, const he
     stats->octree_merges = merged.octree_merges;
     stats->pair_merges = merged.pair_merges;
     stats->max_residual = NAN; /* vertices have moved */
-    return stage(run, "collapse", read, hewn_clock_now(), 1, error);
+    return hewn_extraction_stage(run, "collapse", read, hewn_clock_now(), 1, error);
 }
 
-static hewn_result classify(extraction *run, const hewn_bricks *bricks, hewn_surface *surface, hewn_error *error)
+static hewn_result classify(hewn_extraction *run, const hewn_bricks *bricks, hewn_surface *surface, hewn_error *error)
 {
     if (hewn_method_is_dual(run->method))
         return hewn_dual_classify(run->extractor, &run->grid, bricks, &run->workspace, surface, error);
     return hewn_surface_classify(run->extractor, &run->grid, bricks, &run->workspace, surface, error);
 }
 
-static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *error)
+static hewn_result run_stages(hewn_extraction *run, hewn_triangles *out, hewn_error *error)
 {
     hewn_bricks bricks = {0};
     hewn_surface surface = {0};
@@ -240,15 +232,15 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     double culled = hewn_clock_now();
     run->stats->bricks_active = bricks.count;
     run->stats->cells_visited = (uint64_t)bricks.count * 512;
-    HEWN_TRY(stage(run, "cull", start, culled, 0.1, error));
+    HEWN_TRY(hewn_extraction_stage(run, "cull", start, culled, 0.1, error));
     if (bricks.count == 0)
-        return explain_empty(run, error);
+        return hewn_extraction_explain_empty(run, error);
     HEWN_TRY(classify(run, &bricks, &surface, error));
     double evaluated = culled + surface.sign_seconds;
-    HEWN_TRY(stage(run, "evaluate", culled, evaluated, 0.5, error));
+    HEWN_TRY(hewn_extraction_stage(run, "evaluate", culled, evaluated, 0.5, error));
     if (surface.crossing_count == 0) {
         HEWN_TRY(look_between_samples(run, &bricks, &surface, error));
-        return explain_empty(run, error);
+        return hewn_extraction_explain_empty(run, error);
     }
     if (run->method == HEWN_METHOD_MC33)
         HEWN_TRY(hewn_mc33_refine(run->extractor, &run->grid, &bricks, &run->workspace, &surface, error));
@@ -260,7 +252,7 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
     hewn_result result = emit_into(run, &bricks, &surface, mesh, &kept, error);
     double extracted = hewn_clock_now();
     if (result == HEWN_OK)
-        result = stage(run, "extract", evaluated, extracted, 0.8, error);
+        result = hewn_extraction_stage(run, "extract", evaluated, extracted, 0.8, error);
     if (result == HEWN_OK)
         result = look_between_samples(run, &bricks, &surface, error);
     double searched = hewn_clock_now();
@@ -275,7 +267,7 @@ static hewn_result run_stages(extraction *run, hewn_triangles *out, hewn_error *
         return result;
     if (run->desc->open)
         run->stats->left_bounds = touches_bounds(run, out);
-    return merge ? HEWN_OK : stage(run, "read_back", searched, hewn_clock_now(), 1, error);
+    return merge ? HEWN_OK : hewn_extraction_stage(run, "read_back", searched, hewn_clock_now(), 1, error);
 }
 
 static hewn_result prepare(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_method method,
@@ -295,27 +287,38 @@ static hewn_result prepare(hewn_extractor *extractor, const hewn_extract_desc *d
     return hewn_method_is_dual(method) ? hewn_dual_prepare(extractor, method, error) : HEWN_OK;
 }
 
+hewn_result hewn_extraction_begin(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_extract_stats *stats,
+                                  hewn_extraction *out, hewn_error *error)
+{
+    hewn_extraction *run = out;
+    *run = (hewn_extraction){.extractor = extractor,
+                             .desc = desc,
+                             .method = desc->method == HEWN_METHOD_DEFAULT ? HEWN_METHOD_DC : desc->method,
+                             .workspace.device = extractor->device,
+                             .stats = stats,
+                             .begin = hewn_clock_now()};
+    *stats = (hewn_extract_stats){.method = run->method};
+    HEWN_TRY(hewn_grid_lay(desc, &run->grid, &stats->bounds, error));
+    HEWN_TRY(hewn_extractor_reach(extractor, &run->grid, error));
+    HEWN_TRY(prepare(extractor, desc, run->method, error));
+    for (int axis = 0; axis < 3; axis++)
+        stats->cells[axis] = run->grid.cells[axis] - 2 * run->grid.rim;
+    stats->cell = desc->cell != 0 ? desc->cell : (stats->bounds.hi[0] - stats->bounds.lo[0]) / (double)stats->cells[0];
+    return hewn_extraction_stage(run, "prepare", run->begin, hewn_clock_now(), 0.02, error);
+}
+
 hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_desc *desc, hewn_triangles *out,
                          hewn_extract_stats *stats, hewn_error *error)
 {
     hewn_extract_stats unwanted;
-    extraction run = {
-        .extractor = extractor, .desc = desc, .workspace.device = extractor->device, .begin = hewn_clock_now()};
-    run.method = desc->method == HEWN_METHOD_DEFAULT ? HEWN_METHOD_DC : desc->method;
-    run.stats = stats ? stats : &unwanted;
-    *run.stats = (hewn_extract_stats){.method = run.method};
+    hewn_extraction run;
     *out = (hewn_triangles){0};
-    HEWN_TRY(hewn_grid_lay(desc, &run.grid, &run.stats->bounds, error));
-    HEWN_TRY(hewn_extractor_reach(extractor, &run.grid, error));
-    HEWN_TRY(prepare(extractor, desc, run.method, error));
-    HEWN_TRY(stage(&run, "prepare", run.begin, hewn_clock_now(), 0.02, error));
-    for (int axis = 0; axis < 3; axis++)
-        run.stats->cells[axis] = run.grid.cells[axis] - 2 * run.grid.rim;
-    run.stats->cell = desc->cell != 0
-                          ? desc->cell
-                          : (run.stats->bounds.hi[0] - run.stats->bounds.lo[0]) / (double)run.stats->cells[0];
+    HEWN_TRY(hewn_extraction_begin(extractor, desc, stats ? stats : &unwanted, &run, error));
+    bool limited = desc->max_memory > 0 && desc->max_memory <= INT64_MAX;
+    extractor->device->most_bytes = limited ? extractor->device->bytes + desc->max_memory : 0;
     hewn_result result = run_stages(&run, out, error);
     hewn_workspace_clear(&run.workspace);
+    extractor->device->most_bytes = 0;
     if (result != HEWN_OK)
         hewn_triangles_destroy(out);
     return result;

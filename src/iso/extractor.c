@@ -13,6 +13,7 @@
 extern const char hewn_text_iso_head[], hewn_text_cull[], hewn_text_signs[], hewn_text_suspects[], hewn_text_vertices[],
     hewn_text_choose[], hewn_text_keep_lists[], hewn_text_vertices_listed[];
 
+HEWN_SHADER(clip);
 HEWN_SHADER(compact);
 HEWN_SHADER(cuts);
 HEWN_SHADER(link);
@@ -99,6 +100,7 @@ hewn_result hewn_extractor_reach(hewn_extractor *extractor, const struct hewn_gr
 static hewn_result create_fixed_programs(hewn_extractor *extractor, hewn_error *error)
 {
     const hewn_fixed_kernel kernels[] = {
+        HEWN_FIXED_KERNEL(clip, clip_push, false, &extractor->clip),
         HEWN_FIXED_KERNEL(compact, compact_push, false, &extractor->compact),
         HEWN_FIXED_KERNEL(gather, gather_push, false, &extractor->gather),
         HEWN_FIXED_KERNEL(link, link_push, false, &extractor->link),
@@ -173,9 +175,9 @@ void hewn_extractor_destroy(hewn_extractor **extractor_place)
     if (!extractor)
         return;
     hewn_device *device = extractor->device;
-    hewn_program **programs[] = {&extractor->compact,       &extractor->link,           &extractor->classify,
-                                 &extractor->spread,        &extractor->triangles,      &extractor->gather,
-                                 &extractor->suspects.cuts, &extractor->suspects.remote};
+    hewn_program **programs[] = {&extractor->clip,     &extractor->compact,       &extractor->link,
+                                 &extractor->classify, &extractor->spread,        &extractor->triangles,
+                                 &extractor->gather,   &extractor->suspects.cuts, &extractor->suspects.remote};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         hewn_program_destroy(device, programs[i]);
     clear_field_programs(extractor);

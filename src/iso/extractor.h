@@ -8,6 +8,7 @@
 #include "gpu/gpu.h"
 #include "iso/dual.h"
 #include "iso/grid.h"
+#include "iso/region.h"
 
 /* What only the trilinear interpolant's topology needs, made when it is first asked for. */
 typedef struct hewn_mc33_programs {
@@ -36,6 +37,7 @@ struct hewn_extractor {
     hewn_buffer table; /* hewn_mc_table */
     hewn_program *cull, *signs, *vertices;                        /* made of the field */
     hewn_program *choose, *keep_lists, *gather;                   /* instead of `cull` where it is in lists */
+    hewn_program *clip;                                           /* for parts of a grid */
     hewn_program *compact, *link, *classify, *spread, *triangles; /* the same for all */
     hewn_suspect_programs suspects;
     hewn_mc33_programs mc33;
@@ -69,6 +71,10 @@ hewn_result hewn_workspace_take(hewn_workspace *workspace, const char *what, uin
                                 hewn_buffer **out, hewn_error *error);
 void hewn_workspace_clear(hewn_workspace *workspace);
 
+/* Bytes of a device buffer for the host to read: in place where it can, else in a copy of the workspace. */
+hewn_result hewn_workspace_read(hewn_workspace *workspace, const hewn_buffer *buffer, uint64_t offset, uint64_t bytes,
+                                const void **out, hewn_error *error);
+
 /* The bricks that culling kept. */
 typedef struct hewn_bricks {
     uint32_t count;
@@ -84,7 +90,22 @@ hewn_result hewn_bricks_cull(const hewn_extractor *extractor, const struct hewn_
 
 /* The same for a field in lists, of which `extractor->code` then has those of the bricks. */
 hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct hewn_grid *grid,
-                                   hewn_workspace *workspace, hewn_bricks *out, hewn_error *error);
+                                   const hewn_region *region, hewn_workspace *workspace, hewn_bricks *out,
+                                   hewn_error *error);
+
+/* The same for a part of the grid: the bricks of its own and those that it needs around them, in their order, and
+ * memory is taken for what is there, not for what there might be. */
+hewn_result hewn_bricks_cull_part(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                  const hewn_region *region, hewn_workspace *workspace, hewn_bricks *out,
+                                  hewn_error *error);
+
+/* What of a surface is a part's own, by number: from the first one up to before the second. The rest is there for what
+ * it takes to make that. */
+typedef struct hewn_own {
+    bool part; /* false: all of it is */
+    uint64_t bricks[2], crossings[2], vertices[2], centres[2], triangles[2];
+    const hewn_buffer *bases[2]; /* numbers of bricks' first crossings: its own, and those after; others have none */
+} hewn_own;
 
 /* The surface in those bricks, as counts and ranks on the device. */
 typedef struct hewn_surface {
@@ -97,7 +118,11 @@ typedef struct hewn_surface {
     const hewn_buffer *links, *signs, *edges, *vertex_bases, *triangle_bases;
     const hewn_buffer *centre_bases, *ranks, *asked;   /* of the trilinear interpolant's topology, else NULL */
     const hewn_buffer *lower, *loops, *crossing_bases; /* of the dual methods, whose triangle_bases count quads */
+    hewn_own own;
 } hewn_surface;
+
+/* What is to be emitted: all of the surface where it is no part. */
+hewn_own hewn_surface_own(const hewn_surface *surface);
 
 hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct hewn_grid *grid,
                                   const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
@@ -126,9 +151,9 @@ void hewn_mc33_record_centres(const hewn_extractor *extractor, const struct hewn
 
 /* Where crossings are solved: their records become positions, with normals beside them. */
 typedef struct hewn_crossings {
-    uint64_t count;
+    uint64_t first, end;      /* numbers */
     bool dual;                /* they are not the mesh's vertices */
-    const hewn_buffer *bases; /* number of each brick's first */
+    const hewn_buffer *bases; /* number of each brick's first, none outside of those */
     const hewn_buffer *positions, *normals;
     uint64_t summary; /* address of HEWN_SUMMARY_WORDS */
 } hewn_crossings;
@@ -186,7 +211,8 @@ hewn_result hewn_dual_emit(const hewn_extractor *extractor, const struct hewn_gr
                            hewn_error *error);
 
 /* Makes fans of quads that two triangles cannot cut without perhaps meeting others, if the emission kept what that
- * needs (HEWN_KEEP_FANS). Where there are any, the buffers are made longer and the surface's counts greater. */
+ * needs (HEWN_KEEP_FANS). Where there are any, the buffers are made longer and the surface's counts greater: their
+ * vertices follow all others, their further triangles the (part's own) quads. */
 hewn_result hewn_dual_add_fans(const hewn_extractor *extractor, const hewn_dual_hermite *kept, hewn_surface *surface,
                                hewn_buffer buffers[3], hewn_workspace *workspace, hewn_error *error);
 

@@ -268,14 +268,15 @@ static void triangulate_brick(const hewn_host_surface *surface, const corner_tab
     }
 }
 
-void hewn_host_surface_triangulate(const hewn_host_surface *surface, uint64_t triangle_count)
+void hewn_host_surface_triangulate(const hewn_host_surface *surface, uint32_t first, uint32_t end,
+                                   uint64_t triangle_count)
 {
     corner_table table;
     derive_corners(&table);
-#pragma omp parallel for schedule(dynamic, SHARE) if (surface->count >= ALONE)
-    for (uint32_t slot = 0; slot < surface->count; slot++) {
-        uint64_t end = slot + 1 < surface->count ? surface->triangle_bases[slot + 1] : triangle_count;
-        if (end > surface->triangle_bases[slot])
+#pragma omp parallel for schedule(dynamic, SHARE) if (end - first >= ALONE)
+    for (uint32_t slot = first; slot < end; slot++) {
+        uint64_t next = slot + 1 < surface->count ? surface->triangle_bases[slot + 1] : triangle_count;
+        if (next > surface->triangle_bases[slot])
             triangulate_brick(surface, &table, slot);
     }
 }

@@ -27,8 +27,10 @@ void hewn_host_surface_count(const hewn_host_surface *surface, uint32_t totals[4
 /* Writes the numbers of vertices beside the masks, and the records of vertices. */
 void hewn_host_surface_spread(const hewn_host_surface *surface);
 
-/* Writes the triangles of a surface that was spread: `triangle_count` of them in all. */
-void hewn_host_surface_triangulate(const hewn_host_surface *surface, uint64_t triangle_count);
+/* Writes the triangles of the bricks from `first` up to before `end` of a surface that was spread; all its bricks have
+ * `triangle_count` of them. */
+void hewn_host_surface_triangulate(const hewn_host_surface *surface, uint32_t first, uint32_t end,
+                                   uint64_t triangle_count);
 
 /* Writes the blocks of 2 x 2 x 2 cells with surface, two words a brick as in hewn_cut_push: the work of cuts.comp. Of
  * the views it reads those that are const. */

@@ -228,11 +228,14 @@ void hewn_mc33_record_centres(const hewn_extractor *extractor, const struct hewn
                               const hewn_surface *surface, const hewn_buffer buffers[3], const hewn_buffer *summary,
                               hewn_commands *commands)
 {
-    if (surface->centre_count == 0)
+    hewn_own own = hewn_surface_own(surface);
+    uint64_t count = own.centres[1] - own.centres[0];
+    uint64_t first = surface->vertex_count - surface->centre_count + own.centres[0];
+    if (count == 0)
         return;
     struct hewn_mc33_centre_push push = {.grid = *grid,
-                                         .count = surface->centre_count,
-                                         .first = (uint32_t)(surface->vertex_count - surface->centre_count),
+                                         .count = (uint32_t)count,
+                                         .first = (uint32_t)first,
                                          .bricks = bricks->list->address,
                                          .links = surface->links->address,
                                          .edges = surface->edges->address,
@@ -240,5 +243,5 @@ void hewn_mc33_record_centres(const hewn_extractor *extractor, const struct hewn
                                          .normals = buffers[1].address,
                                          .summary = summary->address};
     hewn_commands_dispatch(commands, extractor->mc33.centres, &push, hewn_code_uniforms(extractor->code),
-                           hewn_groups_for(surface->centre_count, 64));
+                           hewn_groups_for(count, 64));
 }

@@ -153,14 +153,29 @@ static void record_spread(const hewn_extractor *extractor, const struct hewn_gri
     hewn_commands_dispatch(commands, extractor->spread, &push, &extractor->table, hewn_groups_for(bricks->count, 32));
 }
 
+hewn_own hewn_surface_own(const hewn_surface *surface)
+{
+    if (surface->own.part)
+        return surface->own;
+    bool dual = surface->loops;
+    return (hewn_own){.crossings = {0, surface->crossing_count},
+                      .vertices = {0, surface->vertex_count},
+                      .centres = {0, surface->centre_count},
+                      .triangles = {0, surface->triangle_count},
+                      .bases = {dual ? surface->crossing_bases : surface->vertex_bases}};
+}
+
 void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                            const hewn_crossings *crossings, hewn_commands *commands)
 {
     const hewn_buffer *uniforms = hewn_code_uniforms(extractor->code);
+    uint64_t count = crossings->end - crossings->first;
+    if (count == 0)
+        return;
     if (hewn_code_is_listed(extractor->code)) {
         struct hewn_listed_vertex_push push = {.grid = *grid,
                                                .count = bricks->count,
-                                               .vertex_count = (uint32_t)crossings->count,
+                                               .vertex_count = (uint32_t)crossings->end,
                                                .dual = crossings->dual,
                                                .bricks = bricks->list->address,
                                                .vertex_bases = crossings->bases->address,
@@ -172,50 +187,65 @@ void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_gr
         return;
     }
     struct hewn_vertex_push push = {.grid = *grid,
-                                    .count = (uint32_t)crossings->count,
+                                    .count = (uint32_t)count,
                                     .dual = crossings->dual,
-                                    .positions = crossings->positions->address,
-                                    .normals = crossings->normals->address,
+                                    .positions = crossings->positions->address + 12 * crossings->first,
+                                    .normals = crossings->normals->address + 12 * crossings->first,
                                     .summary = crossings->summary};
     hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms,
-                           hewn_groups_for(crossings->count, 64 * HEWN_VERTICES_EACH));
+                           hewn_groups_for(count, 64 * HEWN_VERTICES_EACH));
 }
 
-/* Vertices on edges, and those in cells of the trilinear interpolant's topology. */
+/* Vertices on edges, and those in cells of the trilinear interpolant's topology, which are means of those around, also
+ * of later bricks. */
 static void record_vertices(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                             const hewn_surface *surface, const hewn_buffer buffers[3], const hewn_buffer *summary,
                             hewn_commands *commands)
 {
-    hewn_crossings crossings = {.count = surface->crossing_count,
-                                .bases = surface->vertex_bases,
+    const hewn_own own = hewn_surface_own(surface);
+    hewn_crossings crossings = {.first = own.crossings[0],
+                                .end = own.crossings[1],
+                                .bases = own.bases[0],
                                 .positions = &buffers[0],
                                 .normals = &buffers[1],
                                 .summary = summary->address};
     hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
+    if (own.centres[1] > own.centres[0]) {
+        crossings.first = own.crossings[1];
+        crossings.end = surface->crossing_count;
+        crossings.bases = own.bases[1];
+        crossings.summary += (uint64_t)4 * HEWN_SUMMARY_WORDS;
+        hewn_crossings_record(extractor, grid, bricks, &crossings, commands);
+    }
     hewn_mc33_record_centres(extractor, grid, bricks, surface, buffers, summary, commands);
 }
 
 static void record_triangles(const hewn_extractor *extractor, const hewn_surface *surface, const hewn_buffer *indices,
                              hewn_commands *commands)
 {
-    struct hewn_triangle_push triangles = {.count = (uint32_t)surface->triangle_count,
+    const hewn_own own = hewn_surface_own(surface);
+    uint64_t count = own.triangles[1] - own.triangles[0];
+    struct hewn_triangle_push triangles = {.count = (uint32_t)count,
                                            .links = surface->links->address,
                                            .edges = surface->edges->address,
-                                           .indices = indices->address};
+                                           .indices = indices->address + 12 * own.triangles[0]};
     bool refined = surface->asked;
-    hewn_commands_dispatch(commands, refined ? extractor->mc33.triangles : extractor->triangles, &triangles,
-                           refined ? NULL : &extractor->table, hewn_groups_for(surface->triangle_count, 64));
+    if (count > 0)
+        hewn_commands_dispatch(commands, refined ? extractor->mc33.triangles : extractor->triangles, &triangles,
+                               refined ? NULL : &extractor->table, hewn_groups_for(count, 64));
 }
 
-/* Records of vertices, and all triangles, before any command runs. */
+/* Records of vertices, and what triangles there are to emit, before any command runs. */
 static void emit_on_host(const struct hewn_grid *grid, const hewn_bricks *bricks, const hewn_surface *surface,
                          const hewn_buffer buffers[3])
 {
     hewn_host_surface view = view_on_host(grid, bricks, surface);
+    const hewn_own own = hewn_surface_own(surface);
     view.vertices = buffers[0].mapped;
     view.indices = buffers[2].mapped;
     hewn_host_surface_spread(&view);
-    hewn_host_surface_triangulate(&view, surface->triangle_count);
+    uint32_t first = own.part ? (uint32_t)own.bricks[0] : 0, end = own.part ? (uint32_t)own.bricks[1] : bricks->count;
+    hewn_host_surface_triangulate(&view, first, end, surface->triangle_count);
 }
 
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
@@ -223,8 +253,9 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
                               hewn_emission *out, hewn_error *error)
 {
     hewn_buffer *summary, *results;
-    HEWN_TRY(hewn_workspace_take(workspace, "summary", 4 * HEWN_SUMMARY_WORDS, HEWN_BUFFER_DEVICE, &summary, error));
-    HEWN_TRY(hewn_workspace_take(workspace, "summary", 4 * HEWN_SUMMARY_WORDS, HEWN_BUFFER_READBACK, &results, error));
+    uint64_t bytes = 2 * 4 * HEWN_SUMMARY_WORDS; /* what is not a part's own is not summed up with it */
+    HEWN_TRY(hewn_workspace_take(workspace, "summary", bytes, HEWN_BUFFER_DEVICE, &summary, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "summary", bytes, HEWN_BUFFER_READBACK, &results, error));
     hewn_commands *commands;
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, summary, 0, summary->size, 0);

@@ -60,6 +60,11 @@ static void record_remote(const search *run, hewn_commands *commands)
         push.states[i] = run->bricks->states[i]->address;
     hewn_commands_dispatch(commands, run->extractor->suspects.remote, &push, NULL,
                            hewn_groups_for(run->bricks->count, 32));
+    const hewn_own *own = &run->surface->own;
+    if (own->part && own->bricks[0] > 0) /* others' bricks are not asked */
+        hewn_commands_fill(commands, run->remote, 0, 8 * own->bricks[0], 0);
+    if (own->part && own->bricks[1] < run->bricks->count)
+        hewn_commands_fill(commands, run->remote, 8 * own->bricks[1], 8 * (run->bricks->count - own->bricks[1]), 0);
 }
 
 /* Both on the host, before any command runs. */
@@ -79,6 +84,10 @@ static void find_remote_on_host(const search *run)
     for (uint32_t i = 0; i < run->bricks->levels; i++)
         view.states[i] = run->bricks->states[i]->mapped;
     hewn_host_remote_find(&view, run->remote->mapped);
+    const hewn_own *own = &run->surface->own;
+    for (uint32_t i = 0; i < run->bricks->count && own->part; i++) /* others' bricks are not asked */
+        if (i < own->bricks[0] || i >= own->bricks[1])
+            memset((uint32_t *)run->remote->mapped + (uint64_t)2 * i, 0, 8);
 }
 
 static void record_find(const search *run, hewn_commands *commands)

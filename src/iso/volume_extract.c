@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "iso/bodies.h"
 #include "iso/lattice.h"
 #include "iso/marching_cubes.h"
 #include "iso/mc33.h"
@@ -117,6 +118,11 @@ static hewn_result check(const hewn_volume *volume, const hewn_volume_extract_de
                          (unsigned long long)desc->frame, (unsigned long long)volume->frame_count);
     if (!isfinite(desc->iso))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "an iso value of %g makes no sense", desc->iso);
+    if (desc->keep && desc->open)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "bodies can be chosen where the surface is closed, not with open");
+    if (desc->keep && !(desc->keep->least_volume >= 0 && isfinite(desc->keep->least_volume)))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a least volume of %g makes no sense", desc->keep->least_volume);
     if (method != HEWN_METHOD_MC33 && method != HEWN_METHOD_MARCHING_CUBES)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33 or mc, not by %s",
                          hewn_method_name(method) ? hewn_method_name(method) : "another method");
@@ -204,7 +210,12 @@ static hewn_result run_stages(extraction *run, hewn_method method, hewn_triangle
     hewn_lattice_emit_vertices(lattice, out);
     HEWN_TRY(end_stage(run, "vertices", 0.8, error));
     hewn_lattice_emit_triangles(lattice, out);
-    return end_stage(run, "triangles", 1, error);
+    HEWN_TRY(end_stage(run, "triangles", run->desc->keep ? 0.9 : 1, error));
+    if (!run->desc->keep)
+        return HEWN_OK;
+    HEWN_TRY(hewn_lattice_choose_bodies(lattice, run->desc->keep, out, &run->stats.bodies, error));
+    run->stats.cap_vertices = lattice->cap_vertices;
+    return end_stage(run, "bodies", 1, error);
 }
 
 hewn_result hewn_volume_extract(const hewn_volume *volume, const hewn_volume_extract_desc *desc, hewn_triangles *out,

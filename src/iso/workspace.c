@@ -20,6 +20,23 @@ void hewn_workspace_clear(hewn_workspace *workspace)
         hewn_buffer_destroy(workspace->device, &workspace->buffers[--workspace->count]);
 }
 
+hewn_result hewn_workspace_read(hewn_workspace *workspace, const hewn_buffer *buffer, uint64_t offset, uint64_t bytes,
+                                const void **out, hewn_error *error)
+{
+    hewn_buffer *home;
+    hewn_commands *commands;
+    *out = buffer->mapped ? (const char *)buffer->mapped + offset : NULL;
+    if (buffer->mapped)
+        return HEWN_OK;
+    HEWN_TRY(hewn_workspace_take(workspace, "a copy on the host", bytes, HEWN_BUFFER_READBACK, &home, error));
+    *out = home->mapped;
+    if (bytes == 0)
+        return HEWN_OK;
+    HEWN_TRY(hewn_commands_begin(workspace->device, &commands, error));
+    hewn_commands_copy(commands, buffer, offset, home, 0, bytes);
+    return hewn_commands_submit(&commands, NULL, error);
+}
+
 hewn_dispatch_size hewn_groups_for(uint64_t count, uint32_t size)
 {
     uint64_t groups = (count + size - 1) / size;

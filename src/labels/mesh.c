@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "hewn/labels.h"
 #include "labels/cut.h"
+#include "labels/islands.h"
 #include "labels/relax.h"
 
 static hewn_result fail_memory(hewn_error *error)
@@ -79,6 +80,9 @@ static hewn_result make(const hewn_volume *volume, const hewn_label_desc *desc, 
                         hewn_label_nets *nets, hewn_label_mesh *out, hewn_error *error)
 {
     HEWN_TRY(hewn_label_ids_find(volume, desc, ids, error));
+    if (desc->keep)
+        HEWN_TRY(
+            hewn_label_islands_choose(ids, desc->keep, fabs(hewn_volume_determinant(volume)), &out->islands, error));
     HEWN_TRY(hewn_label_nets_make(ids, desc->progress, nets, error));
     HEWN_TRY(hewn_label_nets_relax(nets, desc->relaxations, desc->progress, error));
     HEWN_TRY(hewn_label_nets_cut(nets, volume->to_world, out, error));
@@ -114,6 +118,45 @@ hewn_result hewn_label_mesh_smooth(hewn_label_mesh *mesh, const hewn_smooth_desc
                               .corners = mesh->indices,
                               .face_count = mesh->triangle_count};
     return hewn_polygons_smooth(&polygons, desc, mesh->positions, report, error);
+}
+
+/* What was made of faces keeps their sides. */
+static hewn_result take(hewn_label_mesh *mesh, hewn_simplified *from, hewn_error *error)
+{
+    uint16_t *sides = hewn_alloc(from->face_count, 2 * sizeof *sides);
+    if (!sides)
+        return fail_memory(error);
+    for (uint64_t f = 0; f < from->face_count; f++)
+        memcpy(sides + 2 * f, mesh->sides + 2 * (size_t)from->face_origins[f], 2 * sizeof *sides);
+    hewn_free(mesh->sides);
+    hewn_free(mesh->positions);
+    hewn_free(mesh->indices);
+    hewn_free(mesh->first);
+    hewn_free(mesh->faces);
+    mesh->sides = sides;
+    mesh->positions = from->positions;
+    mesh->indices = from->corners;
+    mesh->vertex_count = from->vertex_count;
+    mesh->triangle_count = from->face_count;
+    mesh->first = NULL;
+    mesh->faces = NULL;
+    from->positions = NULL;
+    from->corners = NULL;
+    return list_faces(mesh, error);
+}
+
+hewn_result hewn_label_mesh_simplify(hewn_label_mesh *mesh, const hewn_simplify_desc *desc,
+                                     hewn_simplify_report *report, hewn_error *error)
+{
+    hewn_polygons polygons = {.positions = mesh->positions,
+                              .vertex_count = mesh->vertex_count,
+                              .corners = mesh->indices,
+                              .face_count = mesh->triangle_count};
+    hewn_simplified simple;
+    HEWN_TRY(hewn_polygons_simplify(&polygons, desc, &simple, report, error));
+    hewn_result result = take(mesh, &simple, error);
+    hewn_simplified_destroy(&simple);
+    return result;
 }
 
 /* --- shells --------------------------------------------------------------------------------------------------------

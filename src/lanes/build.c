@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "field/sampling.h"
 #include "lanes/internal.h"
 
 enum { MOST_STEPS_A_NODE = 24 };
@@ -144,6 +145,8 @@ static uint32_t other(builder *b, const hewn_node_data *node, const uint32_t *in
         step->in[i] = in[i];
     step->number = (float)node->parameter[0];
     step->node = b->other_count;
+    if (node->samples)
+        hewn_sampling_share(node->samples);
     b->tape->others[b->other_count++] = *node;
     return at;
 }
@@ -212,6 +215,15 @@ static uint32_t fill(builder *b, const hewn_field *field, const uint32_t *ids, s
     return last;
 }
 
+static void free_others(hewn_node_data *others, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        hewn_sampling *samples = (hewn_sampling *)others[i].samples;
+        hewn_sampling_destroy(&samples);
+    }
+    hewn_free(others);
+}
+
 hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_lane_tape **out, hewn_error *error)
 {
     *out = NULL;
@@ -229,10 +241,12 @@ hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_
     } else {
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
     }
-    if (result == HEWN_OK)
+    if (result == HEWN_OK) {
         (*out)->owns = true;
-    else
-        hewn_free(others);
+        (*out)->other_count = b.other_count;
+    } else {
+        free_others(others, b.other_count);
+    }
     hewn_free(places);
     hewn_free(ids);
     hewn_free(b.tape);
@@ -242,7 +256,7 @@ hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_
 void hewn_lane_tape_destroy(hewn_lane_tape **tape)
 {
     if (*tape && (*tape)->owns)
-        hewn_free((*tape)->others);
+        free_others((*tape)->others, (*tape)->other_count);
     hewn_free(*tape);
     *tape = NULL;
 }

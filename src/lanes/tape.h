@@ -57,6 +57,7 @@ typedef struct hewn_lane_tape {
     uint32_t registers;
     uint32_t cuts; /* steps that can be cut */
     bool owns;     /* `others` is freed with it */
+    uint32_t other_count;
     hewn_node_data *others;
     hewn_lane_step steps[]; /* the last one is the field */
 } hewn_lane_tape;

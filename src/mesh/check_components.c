@@ -1,6 +1,5 @@
 #include "mesh/check_components.h"
 
-#include <stdatomic.h>
 #include <stdlib.h>
 
 #include "base/alloc.h"
@@ -10,7 +9,7 @@
 
 /* The root of a vertex's tree. Roots have the least number of their tree, so trees only ever shrink toward it and
  * threads may shorten paths under each other's feet (Anderson and Woll 1991). */
-static uint32_t find_root(_Atomic uint32_t *parent, uint32_t v)
+uint32_t hewn_trees_root(_Atomic uint32_t *parent, uint32_t v)
 {
     for (;;) {
         uint32_t up = atomic_load_explicit(&parent[v], memory_order_relaxed);
@@ -24,11 +23,11 @@ static uint32_t find_root(_Atomic uint32_t *parent, uint32_t v)
     }
 }
 
-static void join(_Atomic uint32_t *parent, uint32_t a, uint32_t b)
+void hewn_trees_join(_Atomic uint32_t *parent, uint32_t a, uint32_t b)
 {
     for (;;) {
-        a = find_root(parent, a);
-        b = find_root(parent, b);
+        a = hewn_trees_root(parent, a);
+        b = hewn_trees_root(parent, b);
         if (a == b)
             return;
         uint32_t low = a < b ? a : b, high = a < b ? b : a, expected = high;
@@ -39,8 +38,8 @@ static void join(_Atomic uint32_t *parent, uint32_t a, uint32_t b)
 }
 
 /* Trees of vertices joined by faces; a used vertex that is its own parent stands for one component. */
-static hewn_result grow_trees(const hewn_face_view *view, const hewn_stars *stars, _Atomic uint32_t **out,
-                              uint64_t *count, hewn_error *error)
+hewn_result hewn_trees_grow(const hewn_face_view *view, const hewn_stars *stars, _Atomic uint32_t **out,
+                            uint64_t *count, hewn_error *error)
 {
     uint64_t vertices = view->vertex_count, roots = 0;
     _Atomic uint32_t *parent = hewn_alloc(vertices, sizeof *parent);
@@ -59,7 +58,7 @@ static hewn_result grow_trees(const hewn_face_view *view, const hewn_stars *star
                 continue;
             uint64_t begin = hewn_face_begin(view, f), end = hewn_face_begin(view, f + 1);
             for (uint64_t c = begin + 1; c < end; c++)
-                join(parent, view->corners[begin], view->corners[c]);
+                hewn_trees_join(parent, view->corners[begin], view->corners[c]);
         }
 #pragma omp for schedule(static) reduction(+ : roots)
         for (uint64_t v = 0; v < vertices; v++)
@@ -74,7 +73,7 @@ hewn_result hewn_components_count(const hewn_face_view *view, const hewn_stars *
                                   hewn_error *error)
 {
     _Atomic uint32_t *parent;
-    hewn_result result = grow_trees(view, stars, &parent, count, error);
+    hewn_result result = hewn_trees_grow(view, stars, &parent, count, error);
     hewn_free((void *)parent);
     return result;
 }
@@ -99,13 +98,13 @@ static void count_faces(const hewn_face_view *view, const hewn_stars *stars, _At
 {
     uint32_t count = 0;
     for (uint64_t v = 0; v < view->vertex_count; v++)
-        if (hewn_star_length(stars, (uint32_t)v) > 0 && find_root(parent, (uint32_t)v) == v) {
+        if (hewn_star_length(stars, (uint32_t)v) > 0 && hewn_trees_root(parent, (uint32_t)v) == v) {
             slots[v] = count;
             roots[count++] = (ranked_root){0, (uint32_t)v};
         }
     for (uint64_t f = 0; f < view->face_count; f++)
         if (!hewn_face_collapsed(view, f))
-            roots[slots[find_root(parent, view->corners[hewn_face_begin(view, f)])]].faces++;
+            roots[slots[hewn_trees_root(parent, view->corners[hewn_face_begin(view, f)])]].faces++;
 }
 
 static hewn_result deal_slots(const hewn_face_view *view, const hewn_stars *stars, _Atomic uint32_t *parent,
@@ -124,7 +123,7 @@ static hewn_result deal_slots(const hewn_face_view *view, const hewn_stars *star
         out->slots[roots[i].root] = i < out->listed ? (uint32_t)i : out->listed;
     for (uint64_t v = 0; v < view->vertex_count; v++) /* roots come before the others of their trees */
         out->slots[v] =
-            hewn_star_length(stars, (uint32_t)v) > 0 ? out->slots[find_root(parent, (uint32_t)v)] : out->listed;
+            hewn_star_length(stars, (uint32_t)v) > 0 ? out->slots[hewn_trees_root(parent, (uint32_t)v)] : out->listed;
     hewn_free(roots);
     return HEWN_OK;
 }
@@ -134,7 +133,7 @@ hewn_result hewn_components_find(const hewn_face_view *view, const hewn_stars *s
 {
     _Atomic uint32_t *parent;
     *out = (hewn_components){0};
-    hewn_result result = grow_trees(view, stars, &parent, &out->count, error);
+    hewn_result result = hewn_trees_grow(view, stars, &parent, &out->count, error);
     out->listed = out->count < most_listed ? (uint32_t)out->count : most_listed;
     if (result == HEWN_OK)
         result = deal_slots(view, stars, parent, out, error);

@@ -6,9 +6,8 @@
 #include "base/error.h"
 #include "base/progress.h"
 
-/* Floating-point sums run over blocks of fixed size, then over the blocks in order, so they do not depend on how many
- * threads there are. A slice is what is done between two looks at the progress callback. */
-enum { BLOCK = 1 << 14, SLICE = 1 << 22 };
+/* A slice is what is done between two looks at the progress callback. */
+enum { SLICE = 1 << 22 };
 
 static uint64_t least(uint64_t a, uint64_t b)
 {
@@ -66,7 +65,7 @@ typedef struct ruler {
     double origin[3]; /* scaled */
     double scale;
     int exponent; /* scale is 2^exponent */
-    double doubt; /* a squared normal above this is no rounding error, whatever the triangle */
+    double doubt; /* as hewn_measure_corners() takes it */
 } ruler;
 
 static ruler choose_ruler(const hewn_triangle_view *mesh, const hewn_box *bounds)
@@ -89,29 +88,6 @@ static ruler choose_ruler(const hewn_triangle_view *mesh, const hewn_box *bounds
     return out;
 }
 
-typedef struct sums {
-    double volume; /* × 6 */
-    double area;   /* × 2 */
-    uint64_t flat;
-} sums;
-
-static double length_squared(const double *a)
-{
-    return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-}
-
-/* Whether the corners of a triangle lie on one line. Only a normal that is tiny beside its sides leaves doubt. */
-static bool is_flat(const hewn_triangle_view *mesh, const uint32_t *corner, double square, double factors)
-{
-    if (square > 1e-24 * factors && square > 1e-200)
-        return false;
-    double a[3], b[3], c[3];
-    hewn_triangle_point(mesh, corner[0], a);
-    hewn_triangle_point(mesh, corner[1], b);
-    hewn_triangle_point(mesh, corner[2], c);
-    return hewn_points_collinear(a, b, c);
-}
-
 static inline void measure_point(const hewn_triangle_view *mesh, uint32_t vertex, const ruler *by, bool floats,
                                  double out[3])
 {
@@ -120,70 +96,78 @@ static inline void measure_point(const hewn_triangle_view *mesh, uint32_t vertex
                            : mesh->doubles[3 * (uint64_t)vertex + (uint64_t)axis] * by->scale;
 }
 
-/* One triangle: the tetrahedron that it spans with the origin, and its area. `floats` is known where this is inlined,
- * and scales nothing. */
-static inline void measure_triangle(const hewn_triangle_view *mesh, uint64_t t, const ruler *by, bool floats, sums *sum)
+/* Whether the corners of a triangle lie on one line. */
+static bool is_flat(const hewn_triangle_view *mesh, const uint32_t *corner)
+{
+    double a[3], b[3], c[3];
+    hewn_triangle_point(mesh, corner[0], a);
+    hewn_triangle_point(mesh, corner[1], b);
+    hewn_triangle_point(mesh, corner[2], c);
+    return hewn_points_collinear(a, b, c);
+}
+
+/* One triangle. `floats` is known where this is inlined, and scales nothing. */
+static inline hewn_measured measure_triangle(const hewn_triangle_view *mesh, uint64_t t, const ruler *by, bool floats)
 {
     const uint32_t *corner = mesh->corners + 3 * t;
-    double a[3], b[3], c[3], u[3], v[3], w[3];
+    double a[3], b[3], c[3];
     measure_point(mesh, corner[0], by, floats, a);
     measure_point(mesh, corner[1], by, floats, b);
     measure_point(mesh, corner[2], by, floats, c);
-    for (int axis = 0; axis < 3; axis++) {
-        u[axis] = b[axis] - a[axis];
-        v[axis] = c[axis] - a[axis];
-        w[axis] = a[axis] - by->origin[axis];
+    hewn_measured one = hewn_measure_corners(a, b, c, by->origin, by->doubt);
+    one.flat = one.flat && is_flat(mesh, corner);
+    return one;
+}
+
+static void measure_slice(const hewn_triangle_view *mesh, const ruler *by, uint64_t begin, uint64_t end,
+                          hewn_measure_sums *all)
+{
+#pragma omp parallel if (end - begin >= HEWN_CHECK_ALONE)
+    {
+        hewn_measure_sums part = {0};
+#pragma omp for schedule(static)
+        for (uint64_t t = begin; t < end; t++)
+            hewn_measure_sums_add(&part, mesh->doubles ? measure_triangle(mesh, t, by, false)
+                                                       : measure_triangle(mesh, t, by, true));
+#pragma omp critical(hewn_measure_sum)
+        hewn_measure_sums_join(all, &part);
     }
-    double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    sum->volume += w[0] * n[0] + w[1] * n[1] + w[2] * n[2];
-    sum->area += sqrt(square);
-    if (!(square > by->doubt))
-        sum->flat += is_flat(mesh, corner, square, length_squared(u) * length_squared(v));
 }
 
-static sums measure_block(const hewn_triangle_view *mesh, const ruler *by, uint64_t begin, uint64_t end)
+void hewn_measure_sums_join(hewn_measure_sums *sums, hewn_measure_sums *part)
 {
-    sums sum = {0};
-    if (mesh->doubles)
-        for (uint64_t t = begin; t < end; t++)
-            measure_triangle(mesh, t, by, false, &sum);
-    else
-        for (uint64_t t = begin; t < end; t++)
-            measure_triangle(mesh, t, by, true, &sum);
-    return sum;
+    hewn_exact_sum_join(&sums->volume, &part->volume);
+    hewn_exact_sum_join(&sums->area, &part->area);
+    sums->flat += part->flat;
 }
 
-/* Blocks first to last - 1 into `parts`. */
-static void measure_blocks(const hewn_triangle_view *mesh, const ruler *by, uint64_t first, uint64_t last, sums *parts)
+/* Volumes are taken about the vertex of the least number that a face names: known early where a mesh comes in parts. */
+static void choose_origin(const hewn_triangle_view *mesh, ruler *by)
 {
-#pragma omp parallel for schedule(dynamic, 1) if (last - first > 1)
-    for (uint64_t block = first; block < last; block++)
-        parts[block] = measure_block(mesh, by, block * BLOCK, least((block + 1) * BLOCK, mesh->triangle_count));
+    uint64_t count = 3 * mesh->triangle_count;
+    uint32_t least_vertex = UINT32_MAX;
+#pragma omp parallel for schedule(static) reduction(min : least_vertex) if (count >= HEWN_CHECK_ALONE)
+    for (uint64_t i = 0; i < count; i++)
+        least_vertex = mesh->corners[i] < least_vertex ? mesh->corners[i] : least_vertex;
+    if (count > 0)
+        measure_point(mesh, least_vertex, by, !mesh->doubles, by->origin);
 }
 
 hewn_result hewn_measure_triangles(const hewn_triangle_view *mesh, const char *stage, const hewn_progress *progress,
                                    hewn_measure *out, hewn_error *error)
 {
     ruler by = choose_ruler(mesh, &out->bounds);
-    uint64_t blocks = (mesh->triangle_count + BLOCK - 1) / BLOCK;
-    sums *parts = hewn_alloc(blocks, sizeof *parts), all = {0};
-    if (!parts)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu sums", (unsigned long long)blocks);
+    hewn_measure_sums all = {0};
+    uint64_t count = mesh->triangle_count;
     hewn_result result = HEWN_OK;
-    for (uint64_t first = 0; first < blocks && result == HEWN_OK; first += SLICE / BLOCK) {
-        uint64_t last = least(first + SLICE / BLOCK, blocks);
-        measure_blocks(mesh, &by, first, last, parts);
-        for (uint64_t block = first; block < last; block++) {
-            all.volume += parts[block].volume;
-            all.area += parts[block].area;
-            all.flat += parts[block].flat;
-        }
-        result = hewn_progress_report(progress, stage, 0.1 + 0.2 * (double)last / (double)blocks, error);
+    choose_origin(mesh, &by);
+    for (uint64_t begin = 0; begin < count && result == HEWN_OK; begin += SLICE) {
+        uint64_t end = least(begin + SLICE, count);
+        measure_slice(mesh, &by, begin, end, &all);
+        result = hewn_progress_report(progress, stage, 0.1 + 0.2 * (double)end / (double)count, error);
     }
-    hewn_free(parts);
-    out->volume = ldexp(all.volume / 6, -3 * by.exponent);
-    out->area = ldexp(all.area / 2, -2 * by.exponent);
+    out->volume = ldexp(hewn_exact_sum_value(&all.volume) / 6, -3 * by.exponent);
+    out->area = ldexp(hewn_exact_sum_value(&all.area) / 2, -2 * by.exponent);
     out->flat_triangles = all.flat;
     return result;
 }
@@ -220,7 +204,7 @@ hewn_result hewn_measure_components(const hewn_face_view *view, const hewn_trian
         uint32_t slot = components->slots[mesh->corners[3 * t]];
         if (slot == components->listed)
             continue;
-        sums one = measure_block(mesh, &rulers[slot], t, t + 1);
+        hewn_measured one = measure_triangle(mesh, t, &rulers[slot], !mesh->doubles);
         out[slot].volume += one.volume;
         out[slot].area += one.area;
     }

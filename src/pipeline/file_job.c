@@ -241,10 +241,10 @@ static hewn_result run(file_job *job, hewn_error *error)
         HEWN_TRY(repair(job, error));
     if (desc->subdivide)
         HEWN_TRY(subdivide(job, error));
-    if (desc->simplify)
-        HEWN_TRY(simplify(job, error));
     if (desc->smooth)
         HEWN_TRY(smooth(job, error));
+    if (desc->simplify)
+        HEWN_TRY(simplify(job, error));
     HEWN_TRY(convert(job, error));
     if (desc->check)
         HEWN_TRY(examine(job, error));

@@ -21,6 +21,17 @@ void hewn_json_box(hewn_json *json, const char *key, const hewn_box *box)
     hewn_json_end_object(json);
 }
 
+void hewn_json_bodies(hewn_json *json, const char *key, const hewn_body_counts *counts)
+{
+    hewn_json_object(json, key);
+    hewn_json_unsigned(json, "bodies", counts->bodies);
+    hewn_json_unsigned(json, "cavities", counts->cavities);
+    hewn_json_unsigned(json, "kept_bodies", counts->kept_bodies);
+    hewn_json_unsigned(json, "kept_cavities", counts->kept_cavities);
+    hewn_json_number(json, "largest_volume", counts->largest_volume);
+    hewn_json_end_object(json);
+}
+
 void hewn_json_certificate(hewn_json *json, const hewn_certificate *certificate)
 {
     hewn_json_bool(json, "closed", certificate->closed);

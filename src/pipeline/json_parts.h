@@ -4,12 +4,16 @@
 
 #include "base/json.h"
 #include "hewn/file_job.h"
+#include "hewn/volume.h"
 
 void hewn_json_vector(hewn_json *json, const char *key, const double vector[3]);
 void hewn_json_box(hewn_json *json, const char *key, const hewn_box *box);
 
 /* The fields of a certificate, into an object that is open. */
 void hewn_json_certificate(hewn_json *json, const hewn_certificate *certificate);
+
+/* What was found and kept, as an object. */
+void hewn_json_bodies(hewn_json *json, const char *key, const hewn_body_counts *counts);
 
 /* "seconds" and "stages". */
 void hewn_json_stages(hewn_json *json, const hewn_report_stage *stages, uint32_t count, double seconds);

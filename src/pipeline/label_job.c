@@ -127,14 +127,14 @@ static hewn_result mesh(label_job *job, hewn_error *error)
                              .labels = desc->labels,
                              .label_count = desc->label_count,
                              .relaxations = desc->relaxations,
+                             .keep = desc->keep,
                              .progress = desc->progress};
     begin_stage(job);
     hewn_result result = hewn_labels_mesh(&job->volume, &label, &job->mesh, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
     job->report->relaxations = desc->relaxations;
-    job->report->vertices = job->mesh.vertex_count;
-    job->report->faces = job->mesh.triangle_count;
+    job->report->islands = job->mesh.islands;
     /* The samples are not looked at any more. */
     const hewn_unit *unit = desc->unit ? desc->unit : job->volume.unit;
     job->report->unit_assumed = !unit && job->volume.anatomical;
@@ -157,6 +157,21 @@ static hewn_result smooth(label_job *job, hewn_error *error)
     job->report->smoothed = true;
     job->report->smooth_method = desc.method;
     end_stage(job, "smooth");
+    return HEWN_OK;
+}
+
+static hewn_result simplify(label_job *job, hewn_error *error)
+{
+    if (!job->desc->simplify)
+        return HEWN_OK;
+    hewn_simplify_desc desc = *job->desc->simplify;
+    desc.labels = NULL;
+    desc.frozen = NULL;
+    desc.progress = job->desc->progress;
+    begin_stage(job);
+    HEWN_TRY(hewn_label_mesh_simplify(&job->mesh, &desc, &job->report->simplify, error));
+    job->report->simplified = true;
+    end_stage(job, "simplify");
     return HEWN_OK;
 }
 
@@ -249,33 +264,69 @@ static hewn_result make_shell(const label_job *job, uint32_t n, hewn_model *out,
     return HEWN_OK;
 }
 
+static bool is_small(const label_job *job, uint32_t n)
+{
+    enum { MOST = 1 << 18 };
+    return job->mesh.first[n + 2] - job->mesh.first[n + 1] < MOST;
+}
+
 /* Proves a shell, as floats. */
-static hewn_result prove(label_job *job, uint32_t n, const hewn_model *shell, hewn_error *error)
+static hewn_result prove(label_job *job, uint32_t n, hewn_error *error)
 {
     hewn_label_fact *fact = &job->report->labels[n];
-    hewn_triangles triangles;
-    HEWN_TRY(hewn_triangles_from_model(shell, &triangles, error));
-    hewn_result result = hewn_certify(&triangles, NULL, &fact->certificate, error);
+    hewn_triangles triangles = {0};
+    hewn_model shell;
+    HEWN_TRY(make_shell(job, n, &shell, error));
+    fact->vertices = shell.vertex_count;
+    fact->faces = shell.face_count;
+    hewn_result result = hewn_triangles_from_model(&shell, &triangles, error);
+    hewn_model_destroy(&shell);
+    if (result == HEWN_OK)
+        result = hewn_certify(&triangles, NULL, &fact->certificate, error);
     hewn_triangles_destroy(&triangles);
     HEWN_TRY(result);
-    fact->vertices = shell->vertex_count;
-    fact->faces = shell->face_count;
     const hewn_certificate *is = &fact->certificate;
-    if (!is->closed || !is->manifold || !is->oriented)
-        return hewn_fail(error, HEWN_INTERNAL, "the shell of label %" PRId64 " is not closed, manifold and oriented",
-                         fact->label);
-    return hewn_progress_report(job->desc->progress, "certify", (n + 1.0) / job->report->label_count, error);
+    if (is->closed && is->manifold && is->oriented)
+        return HEWN_OK;
+    return hewn_fail(error, HEWN_INTERNAL, "the shell of label %" PRId64 " is not closed, manifold and oriented",
+                     fact->label);
+}
+
+/* Threads that share a small shell would wait for each other more than they work, so each takes shells of its own. Of
+ * several failures the one of the first label is told. */
+static hewn_result prove_small(label_job *job, uint32_t from, uint32_t to, hewn_error *error)
+{
+    hewn_result result = HEWN_OK;
+    hewn_error first = {0};
+    uint32_t failed = UINT32_MAX;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (uint32_t n = from; n < to; n++) {
+        hewn_error own = {0};
+        hewn_result is = is_small(job, n) ? prove(job, n, &own) : HEWN_OK;
+#pragma omp critical(hewn_label_prove)
+        if (is != HEWN_OK && n < failed) {
+            failed = n;
+            result = is;
+            first = own;
+        }
+    }
+    if (result != HEWN_OK && error)
+        *error = first;
+    return result;
 }
 
 static hewn_result prove_all(label_job *job, hewn_error *error)
 {
+    enum { BATCH = 64 }; /* after which it is told how far this is */
+    uint32_t count = job->report->label_count;
     begin_stage(job);
-    for (uint32_t n = 0; n < job->report->label_count; n++) {
-        hewn_model shell;
-        HEWN_TRY(make_shell(job, n, &shell, error));
-        hewn_result result = prove(job, n, &shell, error);
-        hewn_model_destroy(&shell);
-        HEWN_TRY(result);
+    for (uint32_t from = 0; from < count; from += BATCH) {
+        uint32_t to = count - from < BATCH ? count : from + BATCH;
+        for (uint32_t n = from; n < to; n++)
+            if (!is_small(job, n))
+                HEWN_TRY(prove(job, n, error));
+        HEWN_TRY(prove_small(job, from, to, error));
+        HEWN_TRY(hewn_progress_report(job->desc->progress, "certify", (double)to / count, error));
     }
     end_stage(job, "certify");
     return HEWN_OK;
@@ -400,6 +451,9 @@ static hewn_result run(label_job *job, hewn_error *error)
     HEWN_TRY(name_labels(job, error));
     HEWN_TRY(find_missing(job, error));
     HEWN_TRY(smooth(job, error));
+    HEWN_TRY(simplify(job, error));
+    job->report->vertices = job->mesh.vertex_count;
+    job->report->faces = job->mesh.triangle_count;
     HEWN_TRY(convert(job, error));
     HEWN_TRY(prove_all(job, error));
     return write_meshes(job, error);

@@ -14,9 +14,11 @@ typedef struct hewn_label_job_desc {
     uint64_t frame;
     const int64_t *labels; /* as in hewn_label_desc */
     size_t label_count;
-    const char *names;              /* a table file; NULL: none */
-    uint32_t relaxations;           /* as in hewn_label_desc */
-    const hewn_file_smooth *smooth; /* after that, all shells together; its mask is not looked at. NULL: none */
+    const char *names;                  /* a table file; NULL: none */
+    const hewn_body_choice *keep;       /* as in hewn_label_desc; volumes are in the volume's unit */
+    uint32_t relaxations;               /* as in hewn_label_desc */
+    const hewn_file_smooth *smooth;     /* after that, all shells together; its mask is not looked at. NULL: none */
+    const hewn_simplify_desc *simplify; /* after that, all shells together, lengths in the volume's unit. NULL: none */
     const char *output;  /* a file for all labels; or, a file each: a folder (ending in /, or one that is there) or a
                             name  with {label} or {name} in it */
     hewn_mesh_format to; /* HEWN_MESH_UNKNOWN: from the output's extension; in a folder STL */
@@ -51,15 +53,17 @@ typedef struct hewn_label_report {
     uint32_t dims[3];
     uint32_t unnamed_count;   /* labels that the table has not; 0 where there is no table */
     uint64_t vertices, faces; /* of the mesh that the shells share */
+    hewn_body_counts islands; /* all 0 where no choice of them was asked for */
     hewn_smooth_report smooth;
+    hewn_simplify_report simplify;
     hewn_conversion conversion;  /* from the volume's world to the output */
-    hewn_report_stage stages[8]; /* load, label, smooth, certify, write */
+    hewn_report_stage stages[8]; /* load, label, smooth, simplify, certify, write */
     uint64_t peak_host_bytes;
     double seconds;
     uint32_t stage_count;
     uint32_t relaxations;
     hewn_smooth_method smooth_method; /* where it was smoothed */
-    bool smoothed;
+    bool smoothed, simplified;
     bool anatomical;
     bool unit_assumed; /* nobody said the unit, and millimetres were taken */
     bool up_known;

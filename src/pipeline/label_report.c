@@ -1,6 +1,7 @@
 #include "base/alloc.h"
 #include "pipeline/json_parts.h"
 #include "pipeline/label_job.h"
+#include "pipeline/simplify_step.h"
 #include "pipeline/smooth_step.h"
 
 void hewn_label_report_destroy(hewn_label_report *report)
@@ -77,6 +78,10 @@ hewn_result hewn_label_report_write(const hewn_label_report *report, const char 
     hewn_json_unsigned(&json, "relaxations", report->relaxations);
     if (report->smoothed)
         hewn_smooth_json(&json, report->smooth_method, &report->smooth);
+    if (report->islands.bodies > 0)
+        hewn_json_bodies(&json, "islands", &report->islands);
+    if (report->simplified)
+        hewn_simplify_json(&json, &report->simplify);
     hewn_json_object(&json, "counts"); /* of the mesh that the shells share */
     hewn_json_unsigned(&json, "vertices", report->vertices);
     hewn_json_unsigned(&json, "faces", report->faces);

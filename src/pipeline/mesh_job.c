@@ -12,6 +12,7 @@
 #include "iso/grid.h"
 #include "pipeline/domain.h"
 #include "pipeline/kept.h"
+#include "pipeline/mesh_parts.h"
 #include "pipeline/paint_step.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
@@ -27,6 +28,7 @@ typedef struct mesh_job {
     hewn_mesh_kept own;
     uint64_t messages; /* of the validation layer, from before this job */
     hewn_triangles triangles;
+    hewn_mesh_parts parts; /* where there is a limit of memory: `triangles` is a view of them */
     hewn_mesh_paint paint;
 } mesh_job;
 
@@ -45,9 +47,15 @@ static hewn_result check_faces(const mesh_job *job, hewn_error *error)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", desc->adaptive);
     if (desc->adaptive > 0 && desc->quads)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "merged faces are triangles, not quads");
+    if (desc->adaptive > 0 && desc->max_memory > 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "merging faces needs the whole mesh in memory, so it excludes a limit of memory");
     if (desc->adaptive > 0 && (!method || strcmp(method, hewn_method_name(HEWN_METHOD_DC)) != 0))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "only the triangles of dc can be merged, not those of %s",
                          method);
+    if (desc->simplify && desc->max_memory > 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "simplification needs the whole mesh in memory, so it excludes a limit of memory");
     if (desc->simplify && desc->quads)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "simplified faces are triangles, not quads");
     if (desc->quads && !hewn_method_is_dual(desc->method))
@@ -108,6 +116,7 @@ static hewn_result describe_request(mesh_job *job, hewn_error *error)
     report->open = desc->open;
     report->quads = desc->quads;
     report->adaptive = desc->adaptive;
+    report->max_memory = desc->max_memory;
     report->threads = desc->threads;
     report->resolution = desc->resolution || desc->cell > 0 ? desc->resolution : HEWN_DEFAULT_RESOLUTION;
     return HEWN_OK;
@@ -151,11 +160,16 @@ static hewn_result extract(mesh_job *job, const hewn_box *bounds, hewn_error *er
         .open = desc->open,
         .quads = desc->quads,
         .adaptive = desc->adaptive,
+        .max_memory = desc->max_memory,
         .progress = desc->progress,
     };
     hewn_extract_stats *stats = &job->report->extraction;
     double begin = seconds_since(job->began);
-    HEWN_TRY(hewn_extract(job->kept->extractor, &extract_desc, &job->triangles, stats, error));
+    if (desc->max_memory > 0)
+        HEWN_TRY(hewn_mesh_parts_make(&job->parts, job->kept->extractor, &extract_desc, desc->output, stats,
+                                      &job->report->certificate, error));
+    else
+        HEWN_TRY(hewn_extract(job->kept->extractor, &extract_desc, &job->triangles, stats, error));
     job->report->method = stats->method;
     for (uint32_t i = 0; i < stats->stage_count; ++i)
         hewn_report_add_stage(job->report, stats->stages[i].name, begin + stats->stages[i].begin,
@@ -196,11 +210,15 @@ static hewn_result certify(mesh_job *job, hewn_error *error)
     HEWN_TRY(hewn_progress_report(job->desc->progress, "certify", 0, error));
     double begin = seconds_since(job->began);
     hewn_certificate *certificate = &job->report->certificate;
-    HEWN_TRY(hewn_certify(&job->triangles, job->desc->progress, certificate, error));
+    if (job->desc->max_memory > 0)
+        job->triangles = job->parts.triangles; /* certified as they came */
+    else
+        HEWN_TRY(hewn_certify(&job->triangles, job->desc->progress, certificate, error));
     certificate->max_residual = job->report->extraction.max_residual;
     job->report->vertices = job->triangles.vertex_count;
     job->report->faces = job->triangles.triangle_count / (job->desc->quads ? 2 : 1);
-    hewn_report_add_stage(job->report, "certify", begin, seconds_since(job->began));
+    if (job->desc->max_memory == 0)
+        hewn_report_add_stage(job->report, "certify", begin, seconds_since(job->began));
     if ((certificate->closed || job->desc->open) && certificate->manifold && certificate->oriented)
         return HEWN_OK;
     return hewn_fail(
@@ -232,6 +250,8 @@ static hewn_result write_mesh(mesh_job *job, hewn_error *error)
         .quads = desc->quads,
         .progress = desc->progress,
     };
+    if (desc->max_memory > 0)
+        write_desc.progress = hewn_mesh_parts_progress(&job->parts, desc->progress);
     HEWN_TRY(hewn_triangles_write(&job->triangles, desc->output, &write_desc, error));
     hewn_report_add_stage(job->report, "write", begin, seconds_since(job->began));
     return HEWN_OK;
@@ -252,11 +272,16 @@ static hewn_result run(mesh_job *job, hewn_error *error)
     hewn_result result = load(job, &bounds, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->scene.path, error);
+    if (desc->max_memory > 0 && hewn_mesh_paint_wanted(hewn_scene_field(job->scene), job->format))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "colours and labels need the whole mesh in memory, so they exclude a limit of memory; .stl "
+                         "and .3mf files have none");
     HEWN_TRY(compile(job, error));
     result = extract(job, &bounds, error);
     if (result != HEWN_OK)
         return result == HEWN_BAD_INPUT ? hewn_blame_input(result, desc->scene.path, error) : result;
-    HEWN_TRY(find_paint(job, error));
+    if (desc->max_memory == 0)
+        HEWN_TRY(find_paint(job, error));
     if (desc->simplify)
         HEWN_TRY(simplify(job, error));
     HEWN_TRY(certify(job, error));
@@ -270,7 +295,10 @@ static void release(mesh_job *job, hewn_result result)
     hewn_mesh_kept *kept = job->kept;
     bool broken = result == HEWN_DEVICE_LOST || result == HEWN_OUT_OF_DEVICE_MEMORY || result == HEWN_OUT_OF_MEMORY;
     hewn_device *device = NULL;
+    if (job->desc->max_memory > 0)
+        job->triangles = (hewn_triangles){0};
     hewn_triangles_destroy(&job->triangles);
+    hewn_mesh_parts_clear(&job->parts);
     hewn_mesh_paint_destroy(&job->paint);
     (void)hewn_opening_wait(&kept->opening, &device, NULL); /* it reads the description from another thread */
     if (device)

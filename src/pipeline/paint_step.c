@@ -67,12 +67,25 @@ static hewn_result find_at_faces(const hewn_field *field, const hewn_triangles *
     return result;
 }
 
+static bool wants_colors(const hewn_field *field, hewn_mesh_format format)
+{
+    return has_colors(format) && hewn_field_has_colors(field, hewn_field_root(field));
+}
+
+static bool wants_labels(const hewn_field *field, hewn_mesh_format format)
+{
+    return has_labels(format) && hewn_field_has_labels(field, hewn_field_root(field));
+}
+
+bool hewn_mesh_paint_wanted(const hewn_field *field, hewn_mesh_format format)
+{
+    return wants_colors(field, format) || wants_labels(field, format);
+}
+
 hewn_result hewn_mesh_paint_find(const hewn_field *field, const hewn_triangles *triangles, bool quads,
                                  hewn_mesh_format format, hewn_mesh_paint *out, hewn_error *error)
 {
-    hewn_node root = hewn_field_root(field);
-    bool colors = has_colors(format) && hewn_field_has_colors(field, root);
-    bool labels = has_labels(format) && hewn_field_has_labels(field, root);
+    bool colors = wants_colors(field, format), labels = wants_labels(field, format);
     uint64_t faces = triangles->triangle_count / (quads ? 2 : 1);
     *out = (hewn_mesh_paint){.domain = format == HEWN_MESH_GLB ? HEWN_DOMAIN_VERT : HEWN_DOMAIN_FACE};
     if (colors)

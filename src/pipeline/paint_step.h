@@ -14,6 +14,9 @@ typedef struct hewn_mesh_paint {
     uint8_t *srgb;      /* 3 a vertex, for formats that want them so; made by hewn_mesh_paint_channels() */
 } hewn_mesh_paint;
 
+/* Whether the field has paint that files of this format can hold. */
+bool hewn_mesh_paint_wanted(const hewn_field *field, hewn_mesh_format format);
+
 /* Evaluates the field's paint at vertices, and at the middles of faces (of the quads where `quads`). */
 hewn_result hewn_mesh_paint_find(const hewn_field *field, const hewn_triangles *triangles, bool quads,
                                  hewn_mesh_format format, hewn_mesh_paint *out, hewn_error *error);

@@ -51,9 +51,26 @@ static hewn_result copy_parameters(hewn_report *report, const hewn_scene *scene)
     return HEWN_OK;
 }
 
+static hewn_result copy_sampled(hewn_report *report, const hewn_scene *scene)
+{
+    size_t count = hewn_scene_sampled_count(scene);
+    report->sampled = hewn_alloc_zero(count, sizeof *report->sampled);
+    if (!report->sampled)
+        return HEWN_OUT_OF_MEMORY;
+    for (size_t i = 0; i < count; ++i) {
+        report->sampled[i] = *hewn_scene_sampled_at(scene, i);
+        report->sampled[i].path = hewn_strdup(report->sampled[i].path);
+        if (!report->sampled[i].path)
+            return HEWN_OUT_OF_MEMORY;
+        report->sampled_count = i + 1;
+    }
+    return HEWN_OK;
+}
+
 hewn_result hewn_report_add_scene(hewn_report *report, const hewn_scene *scene, hewn_error *error)
 {
-    if (copy_files(report, scene) != HEWN_OK || copy_parameters(report, scene) != HEWN_OK)
+    if (copy_files(report, scene) != HEWN_OK || copy_parameters(report, scene) != HEWN_OK ||
+        copy_sampled(report, scene) != HEWN_OK)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the report");
     return HEWN_OK;
 }
@@ -88,6 +105,9 @@ void hewn_report_destroy(hewn_report *report)
     for (size_t i = 0; i < report->parameter_count; ++i)
         hewn_free(report->parameters[i].name);
     hewn_free(report->parameters);
+    for (size_t i = 0; i < report->sampled_count; ++i)
+        hewn_free(report->sampled[i].path);
+    hewn_free(report->sampled);
     *report = (hewn_report){0};
 }
 
@@ -101,6 +121,24 @@ static const char *bounds_source_name(hewn_bounds_source source)
     return NULL;
 }
 
+static void print_sampled(hewn_json *json, const hewn_report *report)
+{
+    hewn_json_array(json, "sampled");
+    for (size_t i = 0; i < report->sampled_count; ++i) {
+        const hewn_scene_sampled *one = &report->sampled[i];
+        hewn_json_object(json, NULL);
+        hewn_json_string(json, "file", one->path);
+        hewn_json_unsigned(json, "bytes", one->bytes);
+        if (one->is_mesh) {
+            hewn_json_number(json, "cell", one->cell);
+            hewn_json_number(json, "confidence", one->confidence);
+            hewn_json_number(json, "doubtful", one->doubtful);
+        }
+        hewn_json_end_object(json);
+    }
+    hewn_json_end_array(json);
+}
+
 static void print_request(hewn_json *json, const hewn_report *report)
 {
     hewn_json_array(json, "files");
@@ -111,6 +149,7 @@ static void print_request(hewn_json *json, const hewn_report *report)
     for (size_t i = 0; i < report->parameter_count; ++i)
         hewn_json_number(json, report->parameters[i].name, report->parameters[i].value);
     hewn_json_end_object(json);
+    print_sampled(json, report);
     hewn_json_string(json, "units", report->units);
     hewn_json_string(json, "output", report->output);
     hewn_json_string(json, "format", hewn_mesh_format_name(report->format));
@@ -123,6 +162,10 @@ static void print_request(hewn_json *json, const hewn_report *report)
         hewn_json_number(json, "adaptive", report->adaptive);
     else
         hewn_json_string(json, "adaptive", NULL);
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "max_memory", report->max_memory);
+    else
+        hewn_json_string(json, "max_memory", NULL);
     if (report->resolution)
         hewn_json_unsigned(json, "resolution", report->resolution);
     else
@@ -183,7 +226,11 @@ static void print_result(hewn_json *json, const hewn_report *report)
     hewn_json_object(json, "peak");
     hewn_json_unsigned(json, "host_bytes", report->peak_host_bytes);
     hewn_json_unsigned(json, "device_bytes", report->peak_device_bytes);
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "counted_bytes", report->extraction.peak_memory);
     hewn_json_end_object(json);
+    if (report->max_memory > 0)
+        hewn_json_unsigned(json, "parts", report->extraction.parts);
     hewn_json_object(json, "counts");
     hewn_json_unsigned(json, "vertices", report->vertices);
     hewn_json_unsigned(json, "faces", report->faces);

@@ -1,5 +1,6 @@
 #include "hewn/volume_job.h"
 
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "geom/distinct.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
 
@@ -17,6 +19,7 @@ typedef struct volume_job {
     hewn_volume_report *report;
     double began, stage;
     hewn_volume volume;
+    uint64_t frame; /* of `volume`: what is asked for, or 0 where only that one is left */
     hewn_triangles mesh;
 } volume_job;
 
@@ -75,6 +78,9 @@ static hewn_result check(volume_job *job, hewn_error *error)
     HEWN_TRY(hewn_output_format(desc->output, desc->format, &job->report->to, error));
     HEWN_TRY(check_space(job, error));
     HEWN_TRY(check_method(desc, error));
+    if (desc->open && desc->keep)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "which bodies to keep can be said where their surfaces are closed, not with open ones");
     if (desc->report && strcmp(desc->report, desc->output) == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
                          strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
@@ -102,11 +108,30 @@ static hewn_result load(volume_job *job, hewn_error *error)
     report->slope = volume->slope;
     report->intercept = volume->intercept;
     report->frame_count = volume->frame_count;
-    report->frame = desc->frame;
+    report->frame = job->frame = desc->frame;
     report->anatomical = volume->anatomical;
     report->left_handed = hewn_volume_determinant(volume) < 0;
     report->remark = volume->remark ? hewn_strdup(volume->remark) : NULL;
     end_stage(job, "load");
+    return HEWN_OK;
+}
+
+/* The smoothed frame takes the place of the volume. */
+static hewn_result filter(volume_job *job, hewn_error *error)
+{
+    if (!job->desc->filter)
+        return HEWN_OK;
+    hewn_volume_smooth_desc desc = *job->desc->filter;
+    hewn_volume smooth;
+    desc.frame = job->frame;
+    desc.progress = job->desc->progress;
+    begin_stage(job);
+    HEWN_TRY(hewn_volume_smooth(&job->volume, &desc, &smooth, error));
+    hewn_volume_destroy(&job->volume);
+    job->volume = smooth;
+    job->frame = 0;
+    job->report->filter = desc;
+    end_stage(job, "filter");
     return HEWN_OK;
 }
 
@@ -156,7 +181,7 @@ static hewn_result choose_iso(volume_job *job, hewn_error *error)
     if (report->iso.kind == HEWN_ISO_NUMBER)
         return HEWN_OK;
     begin_stage(job);
-    HEWN_TRY(hewn_iso_find(&report->iso, &job->volume, desc->frame, &report->iso_value, error));
+    HEWN_TRY(hewn_iso_find(&report->iso, &job->volume, job->frame, &report->iso_value, error));
     end_stage(job, "iso");
     return HEWN_OK;
 }
@@ -168,11 +193,11 @@ static hewn_result measure(volume_job *job, hewn_error *error)
     if (report->measured)
         return HEWN_OK;
     begin_stage(job);
-    report->range = hewn_volume_find_range(volume, report->frame);
+    report->range = hewn_volume_find_range(volume, job->frame);
     report->measured = true;
     if (report->range.finite_count > 0 && report->range.sample_lo < report->range.sample_hi) {
         hewn_volume_histogram histogram;
-        HEWN_TRY(hewn_volume_find_histogram(volume, report->frame, report->range.sample_lo, report->range.sample_hi,
+        HEWN_TRY(hewn_volume_find_histogram(volume, job->frame, report->range.sample_lo, report->range.sample_hi,
                                             HEWN_VOLUME_REPORT_BINS, &histogram, error));
         for (int i = 0; i < HEWN_VOLUME_REPORT_BINS; i++) /* of values: from the least */
             report->bins[volume->slope < 0 ? HEWN_VOLUME_REPORT_BINS - 1 - i : i] = histogram.bins[i];
@@ -195,7 +220,7 @@ static hewn_result explain_nothing(volume_job *job, hewn_error *error)
         return hewn_fail(error, HEWN_BAD_INPUT, "all values of the volume are %g, so there is no surface at %g",
                          range->lo, report->iso_value);
     for (int i = 0; i < 3; i++)
-        HEWN_TRY(hewn_volume_find_percentile(&job->volume, report->frame, 25.0 * (i + 1), &quarter[i], error));
+        HEWN_TRY(hewn_volume_find_percentile(&job->volume, job->frame, 25.0 * (i + 1), &quarter[i], error));
     return hewn_fail(
         error, HEWN_BAD_INPUT,
         "there is no surface at the iso value %.9g: the values are from %.9g to %.9g, a quarter of them up "
@@ -205,17 +230,32 @@ static hewn_result explain_nothing(volume_job *job, hewn_error *error)
 
 /* --- the mesh ----------------------------------------------------------------------------------------------------- */
 
+static double determinant(const double m[16])
+{
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+           m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+/* How many of the mesh's cubes a cube of the volume's world is. */
+static double find_scale(const volume_job *job)
+{
+    return fabs(determinant(job->report->place) / hewn_volume_determinant(&job->volume));
+}
+
 static hewn_result extract(volume_job *job, hewn_error *error)
 {
     const hewn_volume_job_desc *desc = job->desc;
     hewn_volume_report *report = job->report;
-    hewn_volume_extract_desc wanted = {.frame = desc->frame,
+    hewn_body_choice keep = desc->keep ? *desc->keep : (hewn_body_choice){0};
+    keep.least_volume *= find_scale(job);
+    hewn_volume_extract_desc wanted = {.frame = job->frame,
                                        .iso = report->iso_value,
                                        .method = desc->method,
                                        .inside = desc->inside,
                                        .open = desc->open,
                                        .no_normals = report->to == HEWN_MESH_STL || report->to == HEWN_MESH_3MF,
                                        .place = report->place,
+                                       .keep = desc->keep ? &keep : NULL,
                                        .progress = desc->progress};
     begin_stage(job);
     hewn_result result = hewn_volume_extract(&job->volume, &wanted, &job->mesh, &report->extraction, error);
@@ -225,11 +265,60 @@ static hewn_result extract(volume_job *job, hewn_error *error)
         return explain_nothing(job, error);
     HEWN_TRY(result);
     end_stage(job, "extract");
-    report->vertices = job->mesh.vertex_count;
-    report->faces = job->mesh.triangle_count;
     /* A head that touches the border has a cap too, but not mostly. */
     report->box_shaped = 2 * report->extraction.cap_vertices > job->mesh.vertex_count;
     return report->box_shaped || desc->report ? measure(job, error) : HEWN_OK;
+}
+
+/* Lengths come in the volume's unit; in voxels' space there is none. */
+static hewn_result smooth(volume_job *job, double scale, hewn_error *error)
+{
+    hewn_volume_report *report = job->report;
+    hewn_smooth_desc desc = *job->desc->smooth;
+    desc.step *= scale;
+    desc.radius *= scale;
+    desc.labels = NULL;
+    desc.freedom = NULL;
+    desc.progress = job->desc->progress;
+    begin_stage(job);
+    HEWN_TRY(hewn_triangles_smooth(&job->mesh, &desc, &report->smooth, error));
+    report->smoothed = true;
+    report->smooth_method = desc.method;
+    end_stage(job, "smooth");
+    return HEWN_OK;
+}
+
+static hewn_result simplify(volume_job *job, double scale, hewn_error *error)
+{
+    hewn_volume_report *report = job->report;
+    hewn_simplify_desc desc = *job->desc->simplify;
+    desc.error *= scale;
+    desc.labels = NULL;
+    desc.frozen = NULL;
+    desc.progress = job->desc->progress;
+    begin_stage(job);
+    HEWN_TRY(hewn_triangles_simplify(&job->mesh, &desc, &report->simplify, error));
+    report->simplified = true;
+    end_stage(job, "simplify");
+    return HEWN_OK;
+}
+
+/* What changes the mesh itself. The samples are not looked at any more. */
+static hewn_result refine(volume_job *job, hewn_error *error)
+{
+    const hewn_volume_job_desc *desc = job->desc;
+    hewn_volume_report *report = job->report;
+    double scale = report->space == HEWN_SPACE_VOXEL ? 1 : cbrt(find_scale(job));
+    hewn_volume_destroy(&job->volume);
+    if (desc->smooth)
+        HEWN_TRY(smooth(job, scale, error));
+    if (desc->simplify)
+        HEWN_TRY(simplify(job, scale, error));
+    if (desc->smooth || desc->simplify)
+        HEWN_TRY(hewn_triangles_make_distinct(&job->mesh, NULL, error));
+    report->vertices = job->mesh.vertex_count;
+    report->faces = job->mesh.triangle_count;
+    return HEWN_OK;
 }
 
 static hewn_result certify(volume_job *job, hewn_error *error)
@@ -283,8 +372,10 @@ static hewn_result mesh(volume_job *job, hewn_error *error)
 {
     HEWN_TRY(load(job, error));
     HEWN_TRY(choose_place(job, error));
+    HEWN_TRY(filter(job, error));
     HEWN_TRY(choose_iso(job, error));
-    return extract(job, error);
+    HEWN_TRY(extract(job, error));
+    return refine(job, error);
 }
 
 static hewn_result run(volume_job *job, hewn_error *error)

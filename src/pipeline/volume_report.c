@@ -2,6 +2,8 @@
 #include "base/json.h"
 #include "hewn/volume_job.h"
 #include "pipeline/json_parts.h"
+#include "pipeline/simplify_step.h"
+#include "pipeline/smooth_step.h"
 
 static void print_iso(hewn_json *json, const hewn_volume_report *report)
 {
@@ -56,6 +58,24 @@ static void print_volume(hewn_json *json, const hewn_volume_report *report)
     hewn_json_end_array(json);
 }
 
+/* What was done besides; each only where it was asked for. */
+static void print_steps(hewn_json *json, const hewn_volume_report *report)
+{
+    const hewn_body_counts *bodies = &report->extraction.bodies;
+    if (report->filter.length > 0) {
+        hewn_json_object(json, "filter");
+        hewn_json_string(json, "kind", report->filter.filter == HEWN_VOLUME_MEDIAN ? "median" : "gaussian");
+        hewn_json_number(json, "length", report->filter.length);
+        hewn_json_end_object(json);
+    }
+    if (bodies->bodies > 0)
+        hewn_json_bodies(json, "bodies", bodies);
+    if (report->smoothed)
+        hewn_smooth_json(json, report->smooth_method, &report->smooth);
+    if (report->simplified)
+        hewn_simplify_json(json, &report->simplify);
+}
+
 static void print_mesh(hewn_json *json, const hewn_volume_report *report)
 {
     const hewn_volume_extract_stats *stats = &report->extraction;
@@ -91,6 +111,7 @@ hewn_result hewn_volume_report_write(const hewn_volume_report *report, const cha
     print_place(&json, report);
     hewn_json_stages(&json, report->stages, report->stage_count, report->seconds);
     print_volume(&json, report);
+    print_steps(&json, report);
     print_mesh(&json, report);
     hewn_json_end_object(&json);
     hewn_result result = hewn_json_finish(&text, path, error);

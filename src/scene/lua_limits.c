@@ -31,6 +31,16 @@ static uint64_t read_clock(clockid_t id)
     return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
+uint64_t hewn_lua_pause(void)
+{
+    return read_clock(CLOCK_THREAD_CPUTIME_ID);
+}
+
+void hewn_lua_resume(hewn_lua *lua, uint64_t paused)
+{
+    lua->processor_from += read_clock(CLOCK_THREAD_CPUTIME_ID) - paused;
+}
+
 static uint64_t time_limit(const hewn_lua *lua)
 {
     if (lua->limits.instructions > UNLIMITED / TIME_PER_INSTRUCTION)

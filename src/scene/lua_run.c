@@ -160,6 +160,7 @@ static void open_sandbox(lua_State *L)
     hewn_lua_open_scene(L);
     hewn_lua_open_import(L);
     hewn_lua_open_text(L);
+    hewn_lua_open_sampled(L);
     lua_settop(L, 1);
 }
 

@@ -61,6 +61,10 @@ void hewn_lua_watch(hewn_lua *lua);
 /* Raises a Lua error if the scene has used up its time or memory; called from C functions that work for long. */
 void hewn_lua_check(lua_State *L);
 
+/* The thread's processor time, and what was used since then is not the script's: reading and sampling files. */
+uint64_t hewn_lua_pause(void);
+void hewn_lua_resume(hewn_lua *lua, uint64_t paused);
+
 /* Raises a Lua error if the scene is stopped, or if `status` says that Lua ran out of memory. What pcall() calls, so
  * that no script lives on past its limits. */
 void hewn_lua_check_status(lua_State *L, int status);
@@ -98,6 +102,7 @@ void hewn_lua_open_moving(lua_State *L, int methods);
 void hewn_lua_open_scene(lua_State *L);
 void hewn_lua_open_import(lua_State *L);
 void hewn_lua_open_text(lua_State *L);
+void hewn_lua_open_sampled(lua_State *L);
 
 /* --- lua_import.c: files ------------------------------------------------------------------------------------------ */
 

@@ -129,10 +129,12 @@ static hewn_result fill(hewn_scene *scene, const hewn_scene_desc *desc, hewn_sce
                                    standard ? NULL : hewn_path_real(desc->path), error));
     scene->settings = desc->settings;
     scene->setting_count = desc->setting_count;
+    scene->reader = desc->reader;
     hewn_result result =
         format == HEWN_SCENE_VM ? run_vm(scene, text, length, error) : run_lua(scene, desc, text, length, error);
     scene->settings = NULL;
     scene->setting_count = 0;
+    scene->reader = NULL;
     HEWN_TRY(result);
     return check_settings_known(scene, desc, error);
 }
@@ -186,6 +188,12 @@ void hewn_scene_destroy(hewn_scene **scene)
         hewn_free(s->sources[i].path);
         hewn_free(s->sources[i].real);
     }
+    for (size_t i = 0; i < s->sampling_count; i++) {
+        hewn_free(s->samplings[i].report.path);
+        hewn_free(s->samplings[i].real);
+        hewn_sampling_destroy(&s->samplings[i].sampling);
+    }
+    hewn_free(s->samplings);
     hewn_free(s->parameters);
     hewn_free(s->sources);
     hewn_free(s->root);
@@ -235,6 +243,16 @@ hewn_axis hewn_scene_up(const hewn_scene *scene)
 size_t hewn_scene_file_count(const hewn_scene *scene)
 {
     return scene->source_count;
+}
+
+size_t hewn_scene_sampled_count(const hewn_scene *scene)
+{
+    return scene->sampling_count;
+}
+
+const hewn_scene_sampled *hewn_scene_sampled_at(const hewn_scene *scene, size_t index)
+{
+    return index < scene->sampling_count ? &scene->samplings[index].report : NULL;
 }
 
 const char *hewn_scene_file(const hewn_scene *scene, size_t index)

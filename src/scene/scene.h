@@ -15,8 +15,23 @@ typedef struct hewn_scene_source {
     char *real; /* without links and dots: what tells two files apart; NULL for standard input */
 } hewn_scene_source;
 
+/* A file that was sampled, and how: the same once more is not sampled again. */
+typedef struct hewn_scene_sampling {
+    hewn_scene_sampled report;
+    char *real; /* of the file */
+    union {
+        hewn_scene_mesh mesh;
+        hewn_scene_heights heights;
+    } how;
+    char type[16]; /* that heights.type names */
+    hewn_sampling *sampling;
+    hewn_sampling_place place;
+} hewn_scene_sampling;
+
 struct hewn_scene {
     hewn_field *field;
+    hewn_scene_sampling *samplings;
+    size_t sampling_count, sampling_capacity;
     hewn_scene_parameter *parameters; /* names and help are owned */
     size_t parameter_count, parameter_capacity;
     hewn_scene_source *sources; /* the scene's own file first */
@@ -29,6 +44,7 @@ struct hewn_scene {
     char *root; /* the folder that imports must stay in, without links; NULL lets them lie anywhere */
     const hewn_scene_setting *settings;
     size_t setting_count;
+    const hewn_scene_reader *reader;
 };
 
 /* Loads a scene whose text is already in memory; `desc->path` names it, and imports are looked for beside that path.

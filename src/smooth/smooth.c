@@ -11,23 +11,42 @@
 
 /* --- input -------------------------------------------------------------------------------------------------------- */
 
-static hewn_result check_faces(const hewn_polygons *polygons, hewn_error *error)
+static hewn_result check_face(const hewn_polygons *polygons, uint64_t f, hewn_error *error)
 {
-    if (polygons->face_count > 0 && !polygons->corners)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "faces need corners");
-    for (uint64_t f = 0; f < polygons->face_count; f++) {
-        uint64_t begin = smooth_face_begin(polygons, f), end = smooth_face_begin(polygons, f + 1);
-        if (end < begin || end > INT32_MAX)
-            return end < begin ? hewn_fail(error, HEWN_BAD_INPUT, "face %llu does not follow the one before it",
-                                           (unsigned long long)f)
-                               : hewn_fail(error, HEWN_LIMIT, "faces of 2^31 corners and more cannot be smoothed");
-        for (uint64_t c = begin; c < end; c++)
-            if (polygons->corners[c] >= polygons->vertex_count)
-                return hewn_fail(error, HEWN_BAD_INPUT, "face %llu names vertex %u, but there are %llu",
-                                 (unsigned long long)f, polygons->corners[c],
-                                 (unsigned long long)polygons->vertex_count);
-    }
+    uint64_t begin = smooth_face_begin(polygons, f), end = smooth_face_begin(polygons, f + 1);
+    if (end < begin)
+        return hewn_fail(error, HEWN_BAD_INPUT, "face %llu does not follow the one before it", (unsigned long long)f);
+    if (end > INT32_MAX)
+        return hewn_fail(error, HEWN_LIMIT, "faces of 2^31 corners and more cannot be smoothed");
+    for (uint64_t c = begin; c < end; c++)
+        if (polygons->corners[c] >= polygons->vertex_count)
+            return hewn_fail(error, HEWN_BAD_INPUT, "face %llu names vertex %u, but there are %llu",
+                             (unsigned long long)f, polygons->corners[c], (unsigned long long)polygons->vertex_count);
     return HEWN_OK;
+}
+
+static hewn_result check_vertex(const hewn_polygons *polygons, const double *freedom, uint64_t v, hewn_error *error)
+{
+    const double *at = polygons->positions + 3 * v;
+    if (!isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
+        return hewn_fail(error, HEWN_BAD_INPUT, "the position of vertex %llu is not finite", (unsigned long long)v);
+    if (freedom && !(freedom[v] >= 0 && freedom[v] <= 1))
+        return hewn_fail(error, HEWN_BAD_INPUT, "the freedom of vertex %llu must be from 0 to 1, not %g",
+                         (unsigned long long)v, freedom[v]);
+    return HEWN_OK;
+}
+
+/* The first vertex, or the first face, that is not as it must be; names it. */
+static hewn_result check_all(const hewn_polygons *polygons, const double *freedom, bool faces, hewn_error *error)
+{
+    uint64_t count = faces ? polygons->face_count : polygons->vertex_count, first = count;
+#pragma omp parallel for schedule(static) reduction(min : first)
+    for (uint64_t i = 0; i < count; i++)
+        if (i < first && (faces ? check_face(polygons, i, NULL) : check_vertex(polygons, freedom, i, NULL)) != HEWN_OK)
+            first = i;
+    if (first == count)
+        return HEWN_OK;
+    return faces ? check_face(polygons, first, error) : check_vertex(polygons, freedom, first, error);
 }
 
 static hewn_result check_polygons(const hewn_polygons *polygons, const double *freedom, hewn_error *error)
@@ -36,15 +55,10 @@ static hewn_result check_polygons(const hewn_polygons *polygons, const double *f
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "vertices need positions");
     if (polygons->vertex_count > INT32_MAX)
         return hewn_fail(error, HEWN_LIMIT, "2^31 vertices and more cannot be smoothed");
-    for (uint64_t v = 0; v < polygons->vertex_count; v++) {
-        const double *at = polygons->positions + 3 * v;
-        if (!isfinite(at[0]) || !isfinite(at[1]) || !isfinite(at[2]))
-            return hewn_fail(error, HEWN_BAD_INPUT, "the position of vertex %llu is not finite", (unsigned long long)v);
-        if (freedom && !(freedom[v] >= 0 && freedom[v] <= 1))
-            return hewn_fail(error, HEWN_BAD_INPUT, "the freedom of vertex %llu must be from 0 to 1, not %g",
-                             (unsigned long long)v, freedom[v]);
-    }
-    return check_faces(polygons, error);
+    if (polygons->face_count > 0 && !polygons->corners)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "faces need corners");
+    HEWN_TRY(check_all(polygons, freedom, false, error));
+    return check_all(polygons, freedom, true, error);
 }
 
 /* --- measures ----------------------------------------------------------------------------------------------------- */
@@ -57,6 +71,11 @@ typedef struct frame {
 typedef struct extent {
     double lo[3], hi[3];
 } extent;
+
+static double place_in(const frame *in, const double *positions, size_t vertex, size_t axis)
+{
+    return (positions[3 * vertex + axis] - in->origin[axis]) / in->scale;
+}
 
 static extent find_extent(const hewn_polygons *polygons)
 {
@@ -176,7 +195,7 @@ static hewn_result prepare(smooth_work *work, const frame *from, hewn_error *err
 #pragma omp parallel for schedule(static)
     for (size_t v = 0; v < count; v++)
         for (size_t axis = 0; axis < 3; axis++)
-            work->at[3 * v + axis] = (work->polygons->positions[3 * v + axis] - from->origin[axis]) / from->scale;
+            work->at[3 * v + axis] = place_in(from, work->polygons->positions, v, axis);
     HEWN_TRY(cut_faces(work, error));
     return hewn_smooth_neighbours(work->polygons, &work->neighbours, work->flags, error);
 }
@@ -198,15 +217,14 @@ typedef struct moves {
 } moves;
 
 /* Vertices that have not moved keep their bits. */
-static moves bring_block_back(const smooth_work *work, const frame *from, const double *before, uint32_t begin,
-                              uint32_t end)
+static moves bring_block_back(const smooth_work *work, const frame *from, uint32_t begin, uint32_t end)
 {
     moves made = {0, 0, UINT32_MAX};
     for (uint32_t v = begin; v < end; v++) {
         double move[3], *out = work->next + 3 * (size_t)v;
-        smooth_between(before + 3 * (size_t)v, work->at + 3 * (size_t)v, move);
         for (size_t axis = 0; axis < 3; axis++) {
             size_t i = 3 * (size_t)v + axis;
+            move[axis] = work->at[i] - place_in(from, work->polygons->positions, v, axis);
             out[axis] = move[axis] == 0 ? work->polygons->positions[i] : from->origin[axis] + work->at[i] * from->scale;
             if (!isfinite(out[axis]) && made.first_lost > v)
                 made.first_lost = v;
@@ -218,16 +236,14 @@ static moves bring_block_back(const smooth_work *work, const frame *from, const 
     return made;
 }
 
-static hewn_result bring_back(const smooth_work *work, const frame *from, const double *before, double *positions,
-                              hewn_error *error)
+static hewn_result bring_back(const smooth_work *work, const frame *from, double *positions, hewn_error *error)
 {
     hewn_smooth_report *report = work->report;
     moves all[SMOOTH_BLOCKS];
 #pragma omp parallel for schedule(static)
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
-        all[block] =
-            bring_block_back(work, from, before, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
-                             (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
+        all[block] = bring_block_back(work, from, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
+                                      (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
     double sum = 0;
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++) {
         if (all[block].first_lost != UINT32_MAX)
@@ -240,41 +256,56 @@ static hewn_result bring_back(const smooth_work *work, const frame *from, const 
     return HEWN_OK;
 }
 
-static hewn_result run(smooth_work *work, hewn_smooth_desc *desc, double *positions, hewn_error *error)
+/* Lengths that the caller gave, in the frame; a step that he did not is the mean edge. */
+static void settle_lengths(smooth_work *work, hewn_smooth_desc *desc, const frame *from, const measures *found)
 {
-    frame from = find_frame(work->polygons);
-    hewn_smooth_report *report = work->report;
-    HEWN_TRY(prepare(work, &from, error));
-    measures found = measure(work, work->at);
-    const double square = from.scale * from.scale;
-    report->volume_before = found.volume * square * from.scale;
-    report->area_before = found.area * square;
-    double mean_edge = work->cut.face_count > 0 ? found.sides / (3 * (double)work->cut.face_count) : 0;
-    desc->step = desc->step > 0 ? desc->step / from.scale : mean_edge;
-    desc->radius /= from.scale;
-    bool triangles = desc->method == HEWN_SMOOTH_COTAN || desc->method == HEWN_SMOOTH_IMPLICIT ||
-                     desc->method == HEWN_SMOOTH_BILATERAL;
-    if (triangles)
-        HEWN_TRY(hewn_smooth_corners(&work->cut, &work->fans, error));
-    HEWN_TRY(hewn_smooth_lock(work, error));
+    double mean_edge = work->cut.face_count > 0 ? found->sides / (3 * (double)work->cut.face_count) : 0;
+    desc->step = desc->step > 0 ? desc->step / from->scale : mean_edge;
+    desc->radius /= from->scale;
+}
+
+static void report_measures(const measures *found, const frame *from, double *volume, double *area)
+{
+    *volume = found->volume * from->scale * from->scale * from->scale;
+    *area = found->area * from->scale * from->scale;
+}
+
+static hewn_result run_keeping_volume(smooth_work *work, hewn_error *error)
+{
     double *before = hewn_alloc(work->count, 3 * sizeof *before);
     if (!before)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
     memcpy(before, work->at, 3 * (size_t)work->count * sizeof *before);
-    hewn_result result = desc->step > 0 ? run_method(work, error) : HEWN_OK;
-    if (result == HEWN_OK && desc->volume == HEWN_SMOOTH_VOLUME_KEPT)
+    hewn_result result = run_method(work, error);
+    if (result == HEWN_OK)
         result = hewn_smooth_keep_volume(work, before, error);
-    if (result == HEWN_OK) {
-        found = measure(work, work->at);
-        report->volume_after = found.volume * square * from.scale;
-        report->area_after = found.area * square;
-        result = bring_back(work, &from, before, positions, error);
-    }
     hewn_free(before);
+    return result;
+}
+
+static hewn_result run(smooth_work *work, hewn_smooth_desc *desc, bool reported, double *positions, hewn_error *error)
+{
+    frame from = find_frame(work->polygons);
+    hewn_smooth_report *report = work->report;
     bool flows = desc->method == HEWN_SMOOTH_COTAN || desc->method == HEWN_SMOOTH_IMPLICIT;
+    bool kept = desc->volume == HEWN_SMOOTH_VOLUME_KEPT;
+    measures found = {0};
+    HEWN_TRY(prepare(work, &from, error));
+    if (reported || flows)
+        found = measure(work, work->at);
+    report_measures(&found, &from, &report->volume_before, &report->area_before);
+    settle_lengths(work, desc, &from, &found);
+    if (flows || desc->method == HEWN_SMOOTH_BILATERAL)
+        HEWN_TRY(hewn_smooth_corners(&work->cut, &work->fans, error));
+    HEWN_TRY(hewn_smooth_lock(work, error));
+    if (!flows || desc->step > 0)
+        HEWN_TRY(kept ? run_keeping_volume(work, error) : run_method(work, error));
+    if (reported)
+        found = measure(work, work->at);
+    report_measures(&found, &from, &report->volume_after, &report->area_after);
     report->step = flows ? desc->step * from.scale : 0;
     report->radius *= from.scale;
-    return result;
+    return bring_back(work, &from, positions, error);
 }
 
 hewn_result hewn_polygons_smooth(const hewn_polygons *polygons, const hewn_smooth_desc *desc, double *positions,
@@ -293,7 +324,7 @@ hewn_result hewn_polygons_smooth(const hewn_polygons *polygons, const hewn_smoot
     done.strength = umbrella ? settled.strength : 0;
     done.passband = settled.method == HEWN_SMOOTH_TAUBIN ? settled.passband : 0;
     done.angle = settled.method == HEWN_SMOOTH_BILATERAL ? settled.angle : 0;
-    hewn_result result = run(&work, &settled, positions, error);
+    hewn_result result = run(&work, &settled, report != NULL, positions, error);
     release(&work);
     if (result == HEWN_OK && report)
         *report = done;

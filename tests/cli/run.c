@@ -41,7 +41,7 @@ static int open_terminal(int *controller)
 {
     *controller = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
     if (*controller < 0) {
-        print_message("no pseudo-terminals here (is /dev/pts mounted?)\n");
+        print_message("# no pseudo-terminals here (is /dev/pts mounted?)\n");
         skip();
     }
     assert_int_equal(grantpt(*controller), 0);

@@ -396,7 +396,6 @@ static void test_bad_requests(void **state)
         {2, "always in metres", {"convert", "a.nrrd", "-o", "a.glb", "--to-unit", "mm"}},
         {2, "lengths are voxels", {"convert", "a.nrrd", "-o", "a.stl", "--space", "voxel", "--to-unit", "mm"}},
         {2, "--space says", {"convert", "a.nrrd", "-o", "a.stl", "--to-up", "+Y"}},
-        {2, "--smooth is for meshes", {"convert", "a.nrrd", "-o", "a.stl", "--smooth", "taubin"}},
         {2, "no frame 3", {"convert", "a.nrrd", "-o", "a.stl", "--frame", "3"}},
         {2, "an iso value is", {"convert", "a.nrrd", "-o", "a.stl", "--iso", "bone"}},
         {2, "do not go with", {"convert", "a.obj", "-o", "a.stl", "--iso", "3"}},

@@ -121,6 +121,11 @@ static void test_fixed_kernels(void **state)
           MEMBER(hewn_compact_push, parents, ADDRESS), MEMBER(hewn_compact_push, states, ADDRESS),
           MEMBER(hewn_compact_push, ranks, ADDRESS), MEMBER(hewn_compact_push, control, ADDRESS),
           MEMBER(hewn_compact_push, kept, ADDRESS));
+    CHECK(hewn_clip_push, MEMBER(hewn_clip_push, dense[0], NUMBER), MEMBER(hewn_clip_push, tested, NUMBER),
+          MEMBER(hewn_clip_push, top[0], NUMBER), MEMBER(hewn_clip_push, level, NUMBER),
+          MEMBER(hewn_clip_push, below, NUMBER), MEMBER(hewn_clip_push, begin, NUMBER),
+          MEMBER(hewn_clip_push, end, NUMBER), MEMBER(hewn_clip_push, parents, ADDRESS),
+          MEMBER(hewn_clip_push, states, ADDRESS), MEMBER(hewn_clip_push, flags, ADDRESS));
     CHECK(hewn_link_push, MEMBER(hewn_link_push, top[0], NUMBER), MEMBER(hewn_link_push, levels, NUMBER),
           MEMBER(hewn_link_push, count, NUMBER), MEMBER(hewn_link_push, bricks, ADDRESS),
           MEMBER(hewn_link_push, links, ADDRESS), MEMBER(hewn_link_push, states[0], ADDRESS),

@@ -238,7 +238,7 @@ static void test_shapes(void **state)
         for (size_t k = 0; k < sizeof errors / sizeof *errors; k++) {
             double length = errors[k] * cell;
             outcome out = collapse(&surface, length, true, shapes[i].name);
-            print_message("%s, error %g cells: %llu to %llu triangles, %g cells off\n", shapes[i].name, errors[k],
+            print_message("# %s, error %g cells: %llu to %llu triangles, %g cells off\n", shapes[i].name, errors[k],
                           (unsigned long long)out.uniform, (unsigned long long)out.mesh.triangle_count,
                           out.deviation / cell);
             assert_true(out.deviation <= promised(&out, length, cell));

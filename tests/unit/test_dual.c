@@ -196,7 +196,7 @@ static void test_closed_grids(void **state)
             oracle_dual_free(&plain);
             free(inside);
         }
-        print_message("%s: %u faces joined the other way; without that %u of %u grids are not manifold\n",
+        print_message("# %s: %u faces joined the other way; without that %u of %u grids are not manifold\n",
                       kind_names[kind], (unsigned)flips, (unsigned)helped, (unsigned)trials());
         assert_true(kind != EVEN || (flips > 0 && helped > 0));
     }

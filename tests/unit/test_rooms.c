@@ -24,19 +24,21 @@ static const room rooms[] = {
     {"volume", "base geom"},
     {"mesh", "base geom"},
     {"smooth", "base geom mesh"},
-    {"labels", "base geom volume mesh smooth"},
     {"subdivide", "base geom mesh"},
     {"simplify", "base geom mesh"},
+    {"labels", "base geom volume mesh smooth simplify"},
     {"field", "base geom"},
     {"lanes", "base field"},
+    {"voxelize", "base geom mesh field lanes"},
     {"gpu", "base"},
     {"eval", "base geom field gpu"},
     {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field lanes gpu eval"},
     {"font", "base field"},
     {"scene", "base geom field font"},
-    {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field lanes gpu eval iso render font scene io"},
+    {"io", "base geom volume mesh field"},
+    {"pipeline",
+     "base geom volume mesh smooth labels subdivide simplify field lanes voxelize gpu eval iso render font scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -77,6 +79,11 @@ static const header headers[] = {
     {"render", "render"},
     {"render_job", "pipeline"},
     {"font", "font"},
+    {"sampling", "open"},
+    {"sampling_io", "io"},
+    {"heights", "io"},
+    {"voxelize", "voxelize"},
+    {"voxelize_job", "pipeline"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)

@@ -1,11 +1,6 @@
 /* Smoothing of real shapes: volumes of scans, sharp edges and noise of a machine part. */
+#include "../oracle/denoise.h"
 #include "test_smooth_support.h"
-
-static int by_value(const void *a, const void *b)
-{
-    double left = *(const double *)a, right = *(const double *)b;
-    return (left > right) - (left < right);
-}
 
 static double volume_change(const hewn_model *model, hewn_smooth_volume volume)
 {
@@ -46,103 +41,6 @@ static void test_volume_of_scans(void **state)
 
 /* --- sharp edges -------------------------------------------------------------------------------------------------- */
 
-/* An edge of two faces, with the angle by which they bend. */
-typedef struct bend {
-    uint32_t a, b;
-    uint32_t faces[2];
-    double angle;
-} bend;
-
-static double angle_between(const hewn_model *model, const double *positions, const uint32_t faces[2])
-{
-    double n[2][3], lengths[2], dot = 0;
-    for (int i = 0; i < 2; i++) {
-        const double *p[3];
-        for (size_t k = 0; k < 3; k++)
-            p[k] = positions + 3 * (size_t)model->corners[3 * (size_t)faces[i] + k];
-        for (int k = 0; k < 3; k++) {
-            int x = (k + 1) % 3, y = (k + 2) % 3;
-            n[i][k] = (p[1][x] - p[0][x]) * (p[2][y] - p[0][y]) - (p[1][y] - p[0][y]) * (p[2][x] - p[0][x]);
-        }
-        lengths[i] = sqrt(n[i][0] * n[i][0] + n[i][1] * n[i][1] + n[i][2] * n[i][2]);
-    }
-    for (int k = 0; k < 3; k++)
-        dot += n[0][k] * n[1][k] / (lengths[0] * lengths[1]);
-    return acos(fmax(-1, fmin(1, dot))) * 180 / M_PI;
-}
-
-static int by_edge(const void *a, const void *b)
-{
-    const bend *left = a, *right = b;
-    if (left->a != right->a)
-        return left->a < right->a ? -1 : 1;
-    return (left->b > right->b) - (left->b < right->b);
-}
-
-/* The edges that bend by more than 40 degrees; the caller frees them. */
-static bend *find_sharp(const hewn_model *model, size_t *count)
-{
-    size_t sides = 3 * model->face_count;
-    bend *all = malloc(sides * sizeof *all);
-    assert_non_null(all);
-    for (size_t c = 0; c < sides; c++) {
-        uint32_t a = model->corners[c], b = model->corners[c % 3 == 2 ? c - 2 : c + 1];
-        all[c] = (bend){a < b ? a : b, a < b ? b : a, {(uint32_t)(c / 3), 0}, 0};
-    }
-    qsort(all, sides, sizeof *all, by_edge);
-    *count = 0;
-    for (size_t i = 0; i + 1 < sides; i++) {
-        if (by_edge(all + i, all + i + 1) != 0)
-            continue;
-        bend edge = {all[i].a, all[i].b, {all[i].faces[0], all[i + 1].faces[0]}, 0};
-        edge.angle = angle_between(model, model->positions, edge.faces);
-        if (edge.angle > 40)
-            all[(*count)++] = edge;
-    }
-    return all;
-}
-
-/* The median of how far sharp edges bend otherwise than they did. */
-static double median_change(const hewn_model *model, const double *positions, const bend *sharp, size_t count)
-{
-    double *changes = malloc((count + 1) * sizeof *changes);
-    assert_non_null(changes);
-    for (size_t i = 0; i < count; i++)
-        changes[i] = fabs(angle_between(model, positions, sharp[i].faces) - sharp[i].angle);
-    qsort(changes, count, sizeof *changes, by_value);
-    double median = changes[count / 2];
-    free(changes);
-    return median;
-}
-
-static double cross2(const double *a, const double *b, const double *c, double out[3])
-{
-    for (int k = 0; k < 3; k++) {
-        int x = (k + 1) % 3, y = (k + 2) % 3;
-        out[k] = (b[x] - a[x]) * (c[y] - a[y]) - (b[y] - a[y]) * (c[x] - a[x]);
-    }
-    return sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-}
-
-/* How far vertices lie from the planes of the true faces around them, as the root of the mean square: what of noise
- * shows, as sliding along the surface does not. */
-static double noise_left(const hewn_model *clean, const double *positions)
-{
-    double sum = 0;
-    for (uint64_t c = 0; c < 3 * clean->face_count; c++) {
-        uint64_t f = c / 3;
-        const double *p[3];
-        double n[3], apart = 0;
-        for (size_t k = 0; k < 3; k++)
-            p[k] = clean->positions + 3 * (size_t)clean->corners[3 * f + k];
-        double length = cross2(p[0], p[1], p[2], n);
-        for (size_t k = 0; k < 3 && length > 0; k++)
-            apart += n[k] / length * (positions[3 * (size_t)clean->corners[c] + k] - p[0][k]);
-        sum += apart * apart;
-    }
-    return sqrt(sum / (3 * (double)clean->face_count));
-}
-
 /* Noise of `share` edges: how much of it may be left, and how far sharp edges may change, in degrees. */
 static void try_noise(const hewn_model *clean, double share, uint64_t seed, double most_left, double most_changed)
 {
@@ -152,13 +50,14 @@ static void try_noise(const hewn_model *clean, double share, uint64_t seed, doub
     double edge = mean_edge(clean);
     noisy.positions = make_positions(clean);
     add_noise(&noisy, share * edge, &random);
-    bend *sharp = find_sharp(clean, &sharp_count);
+    sharp_edge *sharp = sharp_edges_find(clean, 40, &sharp_count);
+    assert_non_null(sharp);
     double *bilateral = make_positions(clean), *laplacian = make_positions(clean);
     smooth(&noisy, &(hewn_smooth_desc){.method = HEWN_SMOOTH_BILATERAL}, bilateral, NULL);
     smooth(&noisy, &(hewn_smooth_desc){.method = HEWN_SMOOTH_LAPLACIAN}, laplacian, NULL);
     double start = noise_left(clean, noisy.positions), left = noise_left(clean, bilateral);
-    double kept = median_change(clean, bilateral, sharp, sharp_count);
-    double blunted = median_change(clean, laplacian, sharp, sharp_count);
+    double kept = sharp_edges_change(clean, bilateral, sharp, sharp_count);
+    double blunted = sharp_edges_change(clean, laplacian, sharp, sharp_count);
     print_message(
         "# noise of %.1f edges: %.3f left by bilateral, %.3f by Laplacian; %zu sharp edges change by %.2f and "
         "%.2f degrees\n",
@@ -167,7 +66,7 @@ static void try_noise(const hewn_model *clean, double share, uint64_t seed, doub
     assert_true(kept < most_changed);
     assert_true(blunted > 15);
     assert_true(left < most_left * start);
-    free(sharp);
+    hewn_free(sharp);
     hewn_free(noisy.positions);
     hewn_free(bilateral);
     hewn_free(laplacian);

@@ -1,5 +1,8 @@
 /* Subdivision against OpenSubdiv: random sheets with boundaries, holes, creases and corners, by every rule. */
+#include <unistd.h>
+
 #include "osd_peer.h"
+#include "pipeline/tag_file.h"
 #include "subdivide/seams.h"
 #include "test_subdivide_support.h"
 
@@ -188,12 +191,56 @@ static void test_uv_rules(void **state)
     assert_true(compared > 100);
 }
 
+static bool differs_untagged(const hewn_model *model, const hewn_subdivide_desc *desc)
+{
+    hewn_subdivide_desc smooth = *desc;
+    smooth.crease_count = 0;
+    hewn_subdivision *tagged = subdivide(model, desc), *plain = subdivide(model, &smooth);
+    double *with = evaluate(tagged, model->positions), *without = evaluate(plain, model->positions);
+    bool differs = memcmp(with, without, hewn_subdivision_vert_count(tagged) * 3 * sizeof *with) != 0;
+    hewn_free(with);
+    hewn_free(without);
+    hewn_subdivision_destroy(&tagged);
+    hewn_subdivision_destroy(&plain);
+    return differs;
+}
+
+/* A control mesh with tags in its own file, as OpenSubdiv's regression shapes have them: half-sharp rings on a torus.
+ */
+static void test_tagged_file(void **state)
+{
+    (void)state;
+    char folder[4096], path[4200];
+    if (!osd_is_there() || !data_folder(folder))
+        skip();
+    snprintf(path, sizeof path, "%s/malformed/catmark_torus_creases0.obj", folder);
+    if (access(path, R_OK) != 0)
+        skip();
+    hewn_model model;
+    hewn_tags tagged = {0};
+    assert_int_equal(hewn_model_read(path, NULL, &model, NULL), HEWN_OK);
+    assert_int_equal(hewn_tags_read(path, &tagged, NULL), HEWN_OK);
+    assert_true(tagged.crease_count > 0);
+    for (size_t i = 0; i < tagged.crease_count; i++)
+        assert_true(tagged.creases[i].sharpness > 0);
+    for (int i = 0; i < 10; i++) {
+        hewn_subdivide_desc desc = {.levels = 1 + (uint32_t)i / 2, .creasing = (hewn_creasing)(i % 2)};
+        desc.creases = tagged.creases;
+        desc.crease_count = tagged.crease_count;
+        compare(&model, &desc, false);
+        assert_true(differs_untagged(&model, &desc));
+    }
+    hewn_tags_free(&tagged);
+    hewn_model_destroy(&model);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_control_meshes),
         cmocka_unit_test(test_limits_at_lasting_creases),
         cmocka_unit_test(test_uv_rules),
+        cmocka_unit_test(test_tagged_file),
     };
     return cmocka_run_group_tests_name("subdivide_osd", tests, NULL, NULL);
 }

@@ -14,6 +14,7 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>
+#include <openvdb/tools/SignedFloodFill.h>
 
 struct hewn_vdb {
     virtual ~hewn_vdb() = default;
@@ -219,8 +220,78 @@ try {
     return false;
 }
 
+/* A stream that hands its bytes on. */
+class handing_buffer : public std::streambuf
+{
+    const hewn_vdb_level_set *what;
+
+  public:
+    explicit handing_buffer(const hewn_vdb_level_set *whose) : what(whose)
+    {
+    }
+
+  protected:
+    std::streamsize xsputn(const char *bytes, std::streamsize length) override
+    {
+        return what->take(what->user, bytes, size_t(length)) ? length : 0;
+    }
+    int_type overflow(int_type byte) override
+    {
+        char one = traits_type::to_char_type(byte);
+        return what->take(what->user, &one, 1) ? byte : traits_type::eof();
+    }
+};
+
+/* The sign spreads from the leaves to what is far inside: those tiles get the background's negative. */
+openvdb::FloatGrid::Ptr build(const hewn_vdb_level_set *what)
+{
+    using Leaf = openvdb::FloatTree::LeafNodeType;
+    auto grid = openvdb::FloatGrid::create(float(what->background));
+    float values[HEWN_VDB_LEAF];
+    uint8_t active[HEWN_VDB_LEAF];
+    int32_t origin[3];
+    while (what->next(what->user, origin, values, active)) {
+        auto leaf = std::make_unique<Leaf>(openvdb::Coord(origin[0], origin[1], origin[2]), float(what->background));
+        for (openvdb::Index n = 0; n < HEWN_VDB_LEAF; n++)
+            if (active[n])
+                leaf->setValueOn(n, values[n]);
+            else
+                leaf->setValueOff(n, values[n]);
+        grid->tree().addLeaf(leaf.release());
+    }
+    openvdb::tools::signedFloodFill(grid->tree());
+    return grid;
+}
+
+hewn_vdb_result write_level_set(const hewn_vdb_level_set *what, char *message, size_t room)
+try {
+    openvdb::initialize();
+    auto grid = build(what);
+    auto transform = openvdb::math::Transform::createLinearTransform(what->cell);
+    transform->postTranslate({what->origin[0], what->origin[1], what->origin[2]});
+    grid->setTransform(transform);
+    grid->setName(what->name);
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setCreator("Hewn");
+    if (what->unit)
+        grid->insertMeta("unit", openvdb::StringMetadata(what->unit));
+    grid->addStatsMetadata();
+    handing_buffer buffer(what);
+    std::ostream stream(&buffer);
+    stream.exceptions(std::ios::badbit | std::ios::failbit);
+    openvdb::io::Stream(stream).write(openvdb::GridPtrVec{grid});
+    return HEWN_VDB_OK;
+} catch (const std::bad_alloc &) {
+    std::snprintf(message, room, "out of memory for a level set");
+    return HEWN_VDB_OUT_OF_MEMORY;
+} catch (const std::exception &failure) {
+    return fail(message, room, failure.what());
+} catch (...) {
+    return fail(message, room, "OpenVDB cannot write it");
+}
+
 } // namespace
 
 /* io/shim/module.h looks for this name. */
 extern "C" __attribute__((visibility("default"))) const hewn_vdb_module hewn_module_table;
-const hewn_vdb_module hewn_module_table = {open_grid, close_grid, copy_box, copy_leaf};
+const hewn_vdb_module hewn_module_table = {open_grid, close_grid, copy_box, copy_leaf, write_level_set};

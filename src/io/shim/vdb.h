@@ -37,6 +37,23 @@ typedef struct hewn_vdb_facts {
 /* One grid of a file, in memory. May be read by several threads at once. */
 typedef struct hewn_vdb hewn_vdb;
 
+/* A level set to be written: where it is, and functions that give leaves and take the file's bytes. */
+typedef struct hewn_vdb_level_set {
+    const char *name;
+    const char *unit; /* NULL: not told */
+    double origin[3]; /* of sample (0, 0, 0) */
+    double cell;
+    double background; /* the value far outside; far inside it is less than 0 */
+
+    /* The next leaf: where its first sample is, multiples of 8, its samples in the order of leaf() below, and which of
+     * them are active. False after the last. */
+    bool (*next)(void *user, int32_t origin[3], float values[HEWN_VDB_LEAF], uint8_t active[HEWN_VDB_LEAF]);
+
+    /* Bytes of the file, in order; false to give up. */
+    bool (*take)(void *user, const char *bytes, size_t length);
+    void *user;
+} hewn_vdb_level_set;
+
 typedef struct hewn_vdb_module {
     /* Reads a file from memory, which may go away afterwards, and keeps one grid of scalars: the one of this name, or
      * the first where it is NULL. A message of at most `room` bytes says why that failed. */
@@ -53,6 +70,9 @@ typedef struct hewn_vdb_module {
      * leaf's last is in its neighbour, or background (negative inside of a level set). For a way that makes no grid
      * dense. False for a grid of bool, which has no samples as such. */
     bool (*leaf)(const hewn_vdb *grid, uint64_t index, int32_t origin[3], void *samples);
+
+    /* Writes a file of one grid of floats. A message of at most `room` bytes says why that failed. */
+    hewn_vdb_result (*write)(const hewn_vdb_level_set *what, char *message, size_t room);
 } hewn_vdb_module;
 
 #ifdef __cplusplus

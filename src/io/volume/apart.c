@@ -25,8 +25,8 @@ typedef struct reply {
     char name[256], remark[256];
 } reply;
 
-/* Where samples begin: a page's length in, so that they are aligned for every type. */
-enum { SAMPLES_AT = 4096 };
+/* Where samples begin. */
+enum { SAMPLES_AT = HEWN_VOLUME_ROOM_AT };
 _Static_assert(sizeof(reply) <= SAMPLES_AT, "samples begin after the reply");
 
 static const uint64_t SPARE = (uint64_t)1 << 26; /* bytes for the library itself */
@@ -84,12 +84,23 @@ static void copy_text(char out[256], const char *text)
     snprintf(out, 256, "%s", text ? text : "");
 }
 
+/* Sends the reply, and the samples unless the reader wrote them into the shared file itself. */
+static bool send(const hewn_apart *job, int file, const reply *answer)
+{
+    char page[SAMPLES_AT] = {0};
+    memcpy(page, answer, sizeof *answer);
+    if (job->source && answer->result == HEWN_OK && answer->volume.mapped &&
+        answer->volume.samples == answer->volume.memory && answer->volume.memory_length == answer->sample_bytes)
+        return pwrite(file, page, sizeof page, 0) == (ssize_t)sizeof page;
+    return ftruncate(file, 0) == 0 && write_all(file, page, sizeof page) &&
+           write_all(file, answer->volume.samples, answer->sample_bytes);
+}
+
 static bool work(const hewn_apart *job, int file)
 {
     static const int fatal[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM, SIGHUP};
     const struct rlimit no_core = {0, 0};
     hewn_volume_read_desc desc = *job->desc;
-    char page[SAMPLES_AT] = {0};
     reply answer = {.result = HEWN_OK};
     int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     if (nowhere >= 0)
@@ -100,16 +111,17 @@ static bool work(const hewn_apart *job, int file)
     limit_memory(job);
     limit_time(job);
     desc.progress = NULL;
-    if (job->source)
+    if (job->source) {
         job->source->desc = &desc;
+        job->source->room_file = file;
+    }
     answer.result = job->read(job, &desc, &answer.volume, &answer.error);
     if (answer.result == HEWN_OK)
         answer.sample_bytes =
             hewn_volume_frame_size(&answer.volume) * answer.volume.frame_count * hewn_voxel_size(answer.volume.type);
     copy_text(answer.name, answer.volume.name);
     copy_text(answer.remark, answer.volume.remark);
-    memcpy(page, &answer, sizeof answer);
-    return write_all(file, page, sizeof page) && write_all(file, answer.volume.samples, answer.sample_bytes);
+    return send(job, file, &answer);
 }
 
 /* --- in this one -------------------------------------------------------------------------------------------------- */

@@ -1,6 +1,8 @@
 /* From a file's bytes to a volume's samples. No count of a header is believed: it is held against the bytes that are
  * there before anything of its size is allocated. */
+#include <fcntl.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -59,12 +61,22 @@ static hewn_result too_large(const hewn_volume_source *source, size_t bytes, hew
                         (unsigned long long)hewn_volume_limit(source));
 }
 
+/* Memory that the other process has too; all of it is there, so that nobody falls into a hole later. */
+static void *map_room(int file, size_t bytes)
+{
+    if (fallocate(file, 0, 0, (off_t)(HEWN_VOLUME_ROOM_AT + bytes)) != 0)
+        return NULL;
+    void *block = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, HEWN_VOLUME_ROOM_AT);
+    return block == MAP_FAILED ? NULL : block;
+}
+
 hewn_result hewn_volume_make_room(const hewn_volume_source *source, hewn_volume *volume, hewn_error *error)
 {
     size_t bytes = sample_bytes(volume);
     if (bytes > hewn_volume_limit(source))
         return too_large(source, bytes, error);
-    volume->memory = hewn_alloc(bytes, 1);
+    volume->mapped = source->room_file > 0;
+    volume->memory = volume->mapped ? map_room(source->room_file, bytes) : hewn_alloc(bytes, 1);
     if (!volume->memory)
         return hewn_fail_at(error, HEWN_OUT_OF_MEMORY, source->name, 0, "out of memory for %zu bytes of samples",
                             bytes);

@@ -16,7 +16,12 @@ typedef struct hewn_volume_source {
     char *memory;
     size_t memory_length;
     bool mapped;
+    int room_file; /* above 0: samples get their room in this file, mapped from HEWN_VOLUME_ROOM_AT on, not on the heap
+                    */
 } hewn_volume_source;
+
+/* A page in, so that samples are aligned and what is before them is mapped apart. */
+enum { HEWN_VOLUME_ROOM_AT = 4096 };
 
 /* Makes a volume of a source; `*out` is zero after an error. Readers fill in what the header says, call
  * hewn_volume_head_check(), and get samples then. */
@@ -41,8 +46,9 @@ uint64_t hewn_volume_limit(const hewn_volume_source *source);
 hewn_result hewn_volume_head_check(const hewn_volume_source *source, const hewn_volume *volume, size_t *bytes,
                                    hewn_error *error);
 
-/* Room on the heap for all samples of a checked head, which the volume then owns; `volume->memory` is to be filled.
- * Callers have made sure that the file can hold that many. HEWN_LIMIT, HEWN_OUT_OF_MEMORY. */
+/* Room on the heap, or in the source's file, for all samples of a checked head, which the volume then owns;
+ * `volume->memory` is to be filled. Callers have made sure that the file can hold that many. HEWN_LIMIT,
+ * HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_volume_make_room(const hewn_volume_source *source, hewn_volume *volume, hewn_error *error);
 
 /* The samples of a checked head stand in the source as they are, from `offset` on: left there where that can be, else
