@@ -148,7 +148,7 @@ static hewn_result apply_cuts(hewn_grid_sides *sides, const cuts *all, hewn_erro
     hewn_result result = HEWN_OK;
     for (size_t i = 0; i < all->count && result == HEWN_OK;) {
         size_t which = order[i].cut.side;
-        hewn_grid_point last = sides->items[which].a, end = sides->items[which].b;
+        hewn_grid_point last, end = sides->items[which].b;
         int64_t winding = sides->items[which].winding;
         sides->items[which].b = order[i].cut.at; /* the first part stays where it is; it may have no length */
         for (last = order[i++].cut.at; i <= all->count && result == HEWN_OK; i++) {

@@ -107,8 +107,8 @@ void hewn_lua_open_sampled(lua_State *L);
 /* --- lua_import.c: files ------------------------------------------------------------------------------------------ */
 
 /* Finds a file that a script names, beside the file that says it: pushes its path as messages show it and its real
- * path. Raises an error, which begins with the name of the function that asks, where it is not to be found or lies where
- * the scene may not reach. */
+ * path. Raises an error, which begins with the name of the function that asks, where it is not to be found or lies
+ * where the scene may not reach. */
 void hewn_lua_find_file(lua_State *L, const char *function, const char *name);
 
 /* Notes a file among the scene's, once. */
