@@ -9,21 +9,19 @@
 
 static const hewn_option options[] = {
     HEWN_OPTION_OUTPUT,
-    HEWN_OPTION_SMOOTH,
     HEWN_OPTION_SIMPLIFY,
+    HEWN_OPTION_SMOOTH,
+    HEWN_OPTIONS_LABELS,
     HEWN_OPTIONS_FRAME,
     {0, "from", "FORMAT",
      "Read the file as a mesh in glb, gltf, obj, ply, stl or off, or as a volume in nifti, nrrd, metaimage, raw, npy, "
      "inr, tiff, vdb or dicom. Default: by its extension, else by how it begins; needed where FILE is `-`."},
     HEWN_OPTION_TO,
+    HEWN_OPTIONS_VOLUME,
+    HEWN_OPTIONS_VOLUME_MESH,
     HEWN_OPTION_REPORT,
     HEWN_OPTION_QUIET,
     HEWN_OPTION_HELP,
-    HEWN_OPTIONS_OF("Of volumes"),
-    HEWN_OPTIONS_VOLUME,
-    HEWN_OPTIONS_VOLUME_MESH,
-    HEWN_OPTIONS_OF("Of volumes of labels"),
-    HEWN_OPTIONS_LABELS,
 };
 
 static hewn_result read(const hewn_arguments *arguments, hewn_file_steps *steps, hewn_file_job_desc *desc,
