@@ -120,7 +120,7 @@ static hewn_result add_trace(traces *of, uint32_t vertex, uint32_t fold, hewn_er
 static hewn_result take_traces(traces *of, uint32_t vertex, uint32_t i, hewn_error *error)
 {
     uint32_t *seen = of->stamps + of->from->vertex_count;
-    for (uint32_t at = of->heads[vertex]; at != HEWN_NONE; at = of->nexts[at]) {
+    for (uint32_t at = of->heads[vertex]; at != HEWN_NONE && of->folds && of->nexts; at = of->nexts[at]) {
         const uint32_t fold = of->folds[at];
         if (seen[fold] == i)
             continue;

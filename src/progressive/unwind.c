@@ -135,7 +135,8 @@ static hewn_result take_polygons(const fold *of, const numbers *by, hewn_progres
     out->polygon_rows = hewn_alloc(model->face_count, out->row[HEWN_DOMAIN_FACE]);
     if (!out->polygon_first || !out->polygon_wedges || !out->polygon_rows)
         return no_memory(error);
-    memcpy(out->polygon_first, model->first, (model->face_count + 1) * sizeof *out->polygon_first);
+    if (model->first)
+        memcpy(out->polygon_first, model->first, (model->face_count + 1) * sizeof *out->polygon_first);
     for (uint64_t c = 0; c < out->corners; c++)
         out->polygon_wedges[c] = by->wedges[of->corner_wedges[c]];
     for (uint64_t f = 0; out->row[HEWN_DOMAIN_FACE] > 0 && f < model->face_count; f++)
