@@ -156,17 +156,16 @@ static double reach(const simplify_gauge *gauge, const double at[3], uint32_t *f
 static bool measure_face(const simplify_gauge *gauge, uint32_t face, float *middle, float corners[3])
 {
     const simplify_work *work = gauge->work;
-    const hewn_triangle_view input = view_input(gauge);
     const uint32_t *corner = work->tail + 3 * (size_t)face;
     const double *at[3] = {simplify_at(work, corner[0]), simplify_at(work, corner[1]), simplify_at(work, corner[2])};
-    double center[3], own[3], other[3], there[3][3];
+    double center[3], own[3], other[3];
     uint32_t near = work->face_origins[face];
     for (int axis = 0; axis < 3; axis++)
         center[axis] = (at[0][axis] + at[1][axis] + at[2][axis]) / 3;
     *middle = (float)reach(gauge, center, &near);
-    for (uint64_t k = 0; k < 3; k++)
-        hewn_triangle_point(&input, input.corners[3 * (uint64_t)near + k], there[k]);
-    simplify_area_vector(there[0], there[1], there[2], other);
+    const uint32_t *there = gauge->input->corners + 3 * (size_t)near;
+    simplify_area_vector(gauge->positions + 3 * (size_t)there[0], gauge->positions + 3 * (size_t)there[1],
+                         gauge->positions + 3 * (size_t)there[2], other);
     simplify_area_vector(at[0], at[1], at[2], own);
     for (uint32_t k = 0; k < 3; k++)
         corners[k] = work->half[corner[k]] == 3 * face + k ? (float)reach(gauge, at[k], &near) : 0;
