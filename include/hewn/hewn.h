@@ -16,6 +16,7 @@
 #include "hewn/mesh_views.h"
 #include "hewn/model.h"
 #include "hewn/picture.h"
+#include "hewn/query.h"
 #include "hewn/render.h"
 #include "hewn/render_job.h"
 #include "hewn/repair.h"

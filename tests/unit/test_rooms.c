@@ -33,9 +33,10 @@ static const room rooms[] = {
     {"eval", "base geom field gpu"},
     {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field lanes gpu eval"},
+    {"query", "base geom field lanes gpu eval render"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field lanes gpu eval iso render scene io"},
+    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field lanes gpu eval iso render query scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -75,6 +76,7 @@ static const header headers[] = {
     {"picture", "open"},
     {"render", "render"},
     {"render_job", "pipeline"},
+    {"query", "query"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)
