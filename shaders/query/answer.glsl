@@ -60,7 +60,7 @@ bool find_surface(inout vec3 p, float most, float reach, Question q, out vec3 ou
             break;
     }
     vec3 little = 0.5 * push.fine * out_normal;
-    if (!reached || !holds(p + little) || !holds(p - little) || !(place_length(q, p) < reach))
+    if (!reached || !holds(p + little) || !holds(p - little) || !(place_length(q, p, 0.5 * push.fine) < reach))
         return false;
     bool changes = true;
     for (uint i = 0u; i < 2u; i++) {
@@ -92,7 +92,7 @@ bool look(Question q, vec3 lo, vec3 hi)
     } else {
         vec3 p = 0.5 * (lo + hi), n;
         if (find_surface(p, length(hi - lo), high, q, n))
-            take(place_length(q, p) + (q.kind == HEWN_QUERY_NEAREST ? 0.5 * push.fine : 0.0), p, n);
+            take(place_length(q, p, 0.5 * push.fine), p, n);
     }
     return high < before;
 }

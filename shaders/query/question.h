@@ -71,10 +71,10 @@ float question_lower(Question q, vec3 lo, vec3 hi)
     return meet == FAR_AWAY ? FAR_AWAY : max(enter, meet - 2e-6 * (size.x + size.y + size.z));
 }
 
-/* The exact answer where the surface has a place. */
-float place_length(Question q, vec3 p)
+/* The answer where the surface is this near to a place. */
+float place_length(Question q, vec3 p, float doubt)
 {
-    return q.kind == HEWN_QUERY_NEAREST ? distance(q.from, p) : ball_meet(q, p, 0.0);
+    return q.kind == HEWN_QUERY_NEAREST ? distance(q.from, p) + doubt : ball_meet(q, p, -min(doubt, q.radius));
 }
 
 #endif

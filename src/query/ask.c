@@ -73,12 +73,32 @@ static void halve(hewn_asker *asker, const float a[3], const float b[3], float *
     }
 }
 
+/* Values at the points of hewn_ask_entry(), all at once where one tape serves them. */
+static void row_of_values(hewn_asker *asker, const float a[3], const float b[3], float values[HEWN_LANES])
+{
+    const hewn_query *query = asker->query;
+    hewn_lane_points points;
+    bool in = hewn_query_holds(query, a) && hewn_query_holds(query, b);
+    bool alike = in && hewn_octree_find(&query->octree, a) == hewn_octree_find(&query->octree, b);
+    for (int i = 0; i < HEWN_LANE_BLOCK; i++) {
+        float p[3];
+        between(a, b, (float)i / (HEWN_LANE_BLOCK - 1), p);
+        for (int axis = 0; axis < 3; axis++)
+            points.at[axis][i] = p[axis];
+        if (!alike)
+            values[i] = hewn_ask_value(asker, p);
+    }
+    if (alike)
+        hewn_lanes_value(hewn_query_tape_at(query, a), &asker->work, &points, HEWN_LANE_BLOCK, values);
+}
+
 bool hewn_ask_entry(hewn_asker *asker, const float a[3], const float b[3], float *outside, float *inside)
 {
+    float values[HEWN_LANES];
+    row_of_values(asker, a, b, values);
     for (int i = 0; i < HEWN_LANE_BLOCK; i++) {
-        float p[3], share = (float)i / (HEWN_LANE_BLOCK - 1);
-        between(a, b, share, p);
-        if (!(hewn_ask_value(asker, p) <= 0))
+        float share = (float)i / (HEWN_LANE_BLOCK - 1);
+        if (!(values[i] <= 0))
             continue;
         *inside = share;
         *outside = (float)(i - 1) / (HEWN_LANE_BLOCK - 1);

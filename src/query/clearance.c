@@ -171,7 +171,18 @@ static void bound_apart(search *s, int which, const hewn_search_box *boxes, uint
     }
 }
 
-/* Divides the larger box of a pair. */
+/* Which box to divide: one that the other field's slope bounds, as long as its size explains how far the bound is from
+ * the best place, else the larger. */
+static int choose(const search *s, const pair *at, const float size[2])
+{
+    for (int which = 0; which < 2; which++)
+        if (isfinite(s->slope[1 - which]) && s->high - at->lower <= 3 * size[which] &&
+            size[which] > fmaxf(0.25F * s->tolerance, s->fine))
+            return which;
+    return size[0] >= size[1] ? 0 : 1;
+}
+
+/* Divides a box of a pair. */
 static hewn_result expand(search *s, const pair *at, hewn_error *error)
 {
     hewn_search_box parts[8];
@@ -185,7 +196,7 @@ static hewn_result expand(search *s, const pair *at, hewn_error *error)
             s->unseen = fminf(s->unseen, at->lower);
         return HEWN_OK;
     }
-    int which = size[0] >= size[1] ? 0 : 1;
+    int which = choose(s, at, size);
     pair next = *at, best = {.lower = INFINITY};
     uint32_t count = hewn_search_divide(&s->asker[which], &at->box[which], true, parts);
     bound_apart(s, which, parts, count, apart);
@@ -200,7 +211,9 @@ static hewn_result expand(search *s, const pair *at, hewn_error *error)
         best = next.lower < best.lower ? next : best;
         HEWN_TRY(push(s, &next, error));
     }
-    if (best.lower < INFINITY)
+    /* Only where the boxes leave room for a better place than the best so far. */
+    float room = 0.5F * (hewn_apart(best.box[0].lo, best.box[0].hi) + hewn_apart(best.box[1].lo, best.box[1].hi));
+    if (best.lower < INFINITY && best.lower + room < s->high)
         try_pair(s, &best);
     return HEWN_OK;
 }

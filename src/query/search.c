@@ -103,13 +103,14 @@ static void try_surface(search *s, const hewn_search_box *box)
         return;
     }
     enum { ROUNDS = 12 };
-    float t = hewn_ray_meets_ball(q, p, q->radius);
+    /* The surface is within half of what is told apart. */
+    float radius = fmaxf(q->radius - 0.5F * s->asker->query->fine, 0), t = hewn_ray_meets_ball(q, p, radius);
     for (int i = 0; i < ROUNDS && t < s->high; i++) {
         float middle[3];
         take(s, t, p, normal);
         on_ray(q, t, middle);
         hewn_ask_approach(s->asker, middle, p, normal);
-        t = hewn_ray_meets_ball(q, p, q->radius);
+        t = hewn_ray_meets_ball(q, p, radius);
     }
 }
 
@@ -146,7 +147,9 @@ static hewn_result expand(search *s, const hewn_search_box *box, float smallest,
     }
     for (uint32_t i = 0; i < left; i++)
         HEWN_TRY(push(s, &parts[i], error));
-    if (left > 0)
+    /* Only where the box leaves room for a better place than the best so far. */
+    if (left > 0 && (s->question->kind == HEWN_QUERY_RAY ||
+                     parts[best].lower + 0.5F * hewn_apart(parts[best].lo, parts[best].hi) < s->high))
         try_box(s, &parts[best]);
     return HEWN_OK;
 }
