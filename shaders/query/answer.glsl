@@ -91,15 +91,25 @@ bool look(Question q, vec3 lo, vec3 hi)
         take(t, q.from + t * q.along, vec3(0.0));
     } else {
         vec3 p = 0.5 * (lo + hi), n;
-        if (find_surface(p, length(hi - lo), high, q, n))
+        float most = length(hi - lo);
+        for (uint i = 0u; i < 6u; i++) {
+            if (most < push.fine || !find_surface(p, most, high, q, n))
+                break;
             take(place_length(q, p, 0.5 * push.fine), p, n);
+            /* Along the surface towards where the question is asked from. */
+            vec3 to = (q.kind == HEWN_QUERY_NEAREST ? q.from : q.from + high * q.along) - p, aside = to - dot(to, n) * n;
+            p += aside;
+            most = 2.0 * length(aside);
+        }
     }
     return high < before;
 }
 
-/* Walks through the octree. What is not looked into because it cannot be better counts for `low` all the same. */
-bool search(Question q, float known)
+/* Walks through the octree down to a level. What is not looked into because it cannot be better counts for `low` all
+ * the same. True where the steps did not suffice. */
+bool search(Question q, float known, uint levels)
 {
+    low = FAR_AWAY;
     uint turn[HEWN_QUERY_LEVELS + 1u], level = 0u;
     uvec3 at = uvec3(0u);
     turn[0] = 0u;
@@ -112,7 +122,7 @@ bool search(Question q, float known)
             continue;
         }
         steps++;
-        vec3 size = (box_hi - box_lo) * exp2(-float(level + 1u)), middle = box_lo + vec3(2u * at + 1u) * size;
+        vec3 size = (box_hi - box_lo) * uintBitsToFloat((126u - level) << 23u), middle = box_lo + vec3(2u * at + 1u) * size;
         bvec3 near = q.kind == HEWN_QUERY_NEAREST ? greaterThan(q.from, middle) : lessThan(q.along, vec3(0.0));
         uint which = turn[level]++ ^ (uint(near.x) | uint(near.y) << 1u | uint(near.z) << 2u);
         uvec3 part = 2u * at + uvec3(which & 1u, which >> 1u & 1u, which >> 2u);
@@ -128,7 +138,7 @@ bool search(Question q, float known)
         vec2 range = field_interval(vec2(lo.x, hi.x), vec2(lo.y, hi.y), vec2(lo.z, hi.z));
         if (range.x > 0.0 || (range.y < 0.0 && q.kind != HEWN_QUERY_RAY))
             continue;
-        bool last = level + 1u >= push.levels, found = false;
+        bool last = level + 1u >= levels, found = false;
         if (last || high - lower > 0.5 * length(size))
             found = look(q, lo, hi);
         if (last && !found)
@@ -162,7 +172,15 @@ void main()
         if (flags != 0u)
             take(q.begin, start, vec3(0.0));
     }
-    if (q.kind == HEWN_QUERY_NEAREST || flags == 0u)
-        flags |= search(q, known) ? HEWN_ANSWER_RAN_OUT : 0u;
+    if (q.kind == HEWN_QUERY_NEAREST || flags == 0u) {
+        /* First a coarse round, so that the fine one has a good place to compare with. */
+        bool ran_out = false;
+        for (uint levels = min(5u, push.levels); !ran_out; levels = push.levels) {
+            ran_out = search(q, known, levels);
+            if (levels == push.levels)
+                break;
+        }
+        flags |= ran_out ? HEWN_ANSWER_RAN_OUT : 0u;
+    }
     write_answer(push.answers, i * HEWN_ANSWER_WORDS, min(low, high), high, point, normal, flags);
 }

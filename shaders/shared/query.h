@@ -19,8 +19,9 @@
 /* Halvings of the box, at most. */
 #define HEWN_QUERY_LEVELS 20u
 
-/* Loops that a question may run through, all together: CPU drivers end loops after 65,535 and say nothing. */
-#define HEWN_QUERY_STEPS 50000u
+/* Loops that the questions of a subgroup may run through, all together: CPU drivers end loops after 65,535 and say
+ * nothing. */
+#define HEWN_QUERY_STEPS 60000u
 
 struct hewn_query_push {
     HEWN_FLOATS questions;

@@ -171,14 +171,14 @@ static void bound_apart(search *s, int which, const hewn_search_box *boxes, uint
     }
 }
 
-/* Which box to divide: one that the other field's slope bounds, as long as its size explains how far the bound is from
- * the best place, else the larger. */
+/* Which box to divide: one of which the other field's slope says much, as long as its size explains how far that is
+ * from the best place, else the larger. */
 static int choose(const search *s, const pair *at, const float size[2])
 {
-    for (int which = 0; which < 2; which++)
-        if (isfinite(s->slope[1 - which]) && s->high - at->lower <= 3 * size[which] &&
-            size[which] > fmaxf(0.25F * s->tolerance, s->fine))
-            return which;
+    int bounded = at->apart[0] >= at->apart[1] ? 0 : 1;
+    if (at->apart[bounded] > 0.25F * s->high && s->high - at->apart[bounded] <= 3 * size[bounded] &&
+        size[bounded] > fmaxf(0.25F * s->tolerance, s->fine))
+        return bounded;
     return size[0] >= size[1] ? 0 : 1;
 }
 
