@@ -4,7 +4,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -386,25 +385,12 @@ static void test_cancel(void **state)
     hewn_query_destroy(&query);
 }
 
-#include <time.h>
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-static int report(void **state)
-{
-    (void)state;
-    fprintf(stderr, "cpu %.2f\n", now());
-    return 0;
-}
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_nearest, report),    cmocka_unit_test_teardown(test_rays, report),      cmocka_unit_test_teardown(test_parts_of_rays, report),
-        cmocka_unit_test_teardown(test_hard_cases, report), cmocka_unit_test_teardown(test_clearance, report), cmocka_unit_test_teardown(test_overlap, report),
-        cmocka_unit_test_teardown(test_refusals, report),   cmocka_unit_test_teardown(test_cancel, report),
+        cmocka_unit_test(test_nearest),    cmocka_unit_test(test_rays),      cmocka_unit_test(test_parts_of_rays),
+        cmocka_unit_test(test_hard_cases), cmocka_unit_test(test_clearance), cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_refusals),   cmocka_unit_test(test_cancel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
