@@ -37,7 +37,7 @@ static const hewn_option options[] = {
      "Evaluate at the points of FILE, one a line: three numbers with blanks or commas between; `-` is standard input. "
      "Any number of lines; empty ones and what follows a # are passed over."},
     {0, "at", "X,Y,Z", "Evaluate at this point. May be repeated."},
-    {0, "grid", "NXxNY[xNZ]",
+    {0, "grid", "SIZE",
      "Evaluate in the middles of so many cells of the bounds, x fastest, y and z rising; without NZ on the plane z = "
      "0."},
     {0, "gradient", NULL, "Print the gradient behind the value: VALUE DX DY DZ. Not with --grid."},
@@ -368,7 +368,7 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
 const hewn_command hewn_command_eval = {
     .name = "eval",
     .summary = "print a field's values at points or on a grid",
-    .usage = "SCENE (--points FILE | --at X,Y,Z | --grid NXxNY[xNZ]) [OPTION]...",
+    .usage = "SCENE (--points FILE | --at X,Y,Z | --grid SIZE) [OPTION]...",
     .about = "Prints the value of a scene's field (.lua, .vm) at points, a line each in their\n"
              "order: for shapes the distance from the surface, below 0 inside (docs/scene.md\n"
              "tells how exact). At points values are computed in double precision, on grids\n"
