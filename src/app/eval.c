@@ -38,8 +38,8 @@ static const hewn_option options[] = {
      "Any number of lines; empty ones and what follows a # are passed over."},
     {0, "at", "X,Y,Z", "Evaluate at this point. May be repeated."},
     {0, "grid", "SIZE",
-     "Evaluate in the middles of so many cells of the bounds, x fastest, y and z rising; without NZ on the plane z = "
-     "0."},
+     "NXxNYxNZ: evaluate in the middles of so many cells of the bounds, x fastest, y and z rising. NXxNY: on the plane "
+     "z = 0."},
     {0, "gradient", NULL, "Print the gradient behind the value: VALUE DX DY DZ. Not with --grid."},
     {0, "inside", NULL, "With --grid print 1 where the value is below 0, else 0; what bounds decide is not computed."},
     {'o', "output", "FILE", "Write to FILE, which appears when it is complete. Default: `-`, standard output."},
@@ -378,6 +378,6 @@ const hewn_command hewn_command_eval = {
     .after = "Examples:\n"
              "  echo 0 0 0 | hewn eval assets/scenes/csg.lua --points - --gradient\n"
              "  hewn eval assets/scenes/bracket.lua --at 10,0,0 --at 0,10,0\n"
-             "  hewn eval prospero.vm --grid 1024x1024 --inside --report cost.json -o /dev/null\n",
+             "  hewn eval prospero.vm --grid 1024x1024 --inside --report - -o /dev/null\n",
     .run = run,
 };

@@ -30,7 +30,7 @@ static const hewn_option options[] = {
     {0, "rays", "FILE",
      "Find where each ray of FILE first enters the solid, one a line: x y z dx dy dz; `-` is standard input."},
     {0, "radius", "R", "With --rays: move balls of this radius along them, until they touch the surface."},
-    {0, "clearance", "SCENE", "Find how far the solid is from that of another scene, and where they are nearest."},
+    {0, "clearance", "B", "Find how far the solid is from that of another scene, and where they are nearest."},
     {0, "tolerance", "T",
      "How far LOW and HIGH may be apart, in scene units. Default: 1e-4 of the box's diagonal, of clearances 1e-3."},
     {'o', "output", "FILE", "Write to FILE, which appears when it is complete. Default: `-`, standard output."},
@@ -292,12 +292,12 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
 const hewn_command hewn_command_query = {
     .name = "query",
     .summary = "find nearest points, what rays and balls meet, and clearances",
-    .usage = "SCENE (--nearest FILE | --rays FILE | --clearance SCENE) [OPTION]...",
+    .usage = "SCENE --nearest FILE | --rays FILE | --clearance B [OPTION]...",
     .about = "Asks where the surface of a scene's field (.lua, .vm) is. Each answer is a line:\n"
              "outside, inside or nothing (of clearances apart, overlap or nothing), sure where\n"
              "LOW and HIGH are as near as asked for, else rough; the two lengths between which\n"
-             "the true one lies; where HIGH was found, and the normal there. Fields need not be\n"
-             "distances: bounds prove that nothing is nearer than LOW.\n",
+             "the true one lies; where HIGH was found, and the normal there. Fields need not\n"
+             "be distances: bounds prove that nothing is nearer than LOW.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
