@@ -249,8 +249,8 @@ static void trace_together(crew *c, const hewn_lane_tape *tape, walker *const *g
         walker *w = group[i];
         w->steps++;
         w->met = values[i] <= 0;
-        if (w->met) {
-            w->t = fmaxf(w->t - w->stride, w->begin);
+        if (w->met) { /* a step by the value itself ends on the surface, or by rounding a little behind */
+            w->t = fmaxf(w->t - fminf(w->stride, enough(c->stage, w->t)), w->begin);
             continue;
         }
         w->stride = fmaxf((values[i] - c->tracer->slack) / c->tracer->steepness, enough(c->stage, w->t));
