@@ -4,8 +4,7 @@
 
 #define FAR_AWAY 3.0e38
 
-struct Question
-{
+struct Question {
     uint kind;
     vec3 from, along; /* unit, no component 0 */
     float begin, end, radius;

@@ -36,7 +36,8 @@ static const room rooms[] = {
     {"query", "base geom field lanes gpu eval render"},
     {"scene", "base geom field"},
     {"io", "base geom volume mesh"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify field lanes gpu eval iso render query scene io"},
+    {"pipeline",
+     "base geom volume mesh smooth labels subdivide simplify field lanes gpu eval iso render query scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
