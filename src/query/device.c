@@ -11,7 +11,8 @@ extern const char hewn_text_query_head[], hewn_text_answer[];
 enum { GROUP = 64, PIECE = 1 << 16 };
 #define FAR_AWAY 3.0e38F
 
-static hewn_result open(hewn_query_device *on, const hewn_field *field, hewn_node root, bool *listed, hewn_error *error)
+static hewn_result compile(hewn_query_device *on, const hewn_field *field, hewn_node root, bool *listed,
+                           hewn_error *error)
 {
     const hewn_kernel_desc desc = {.name = "answer",
                                    .head = hewn_text_query_head,
@@ -34,7 +35,7 @@ hewn_result hewn_query_open_device(hewn_query *query, hewn_device *device, const
 {
     bool listed = false;
     query->on = (hewn_query_device){.device = device};
-    hewn_result result = open(&query->on, field, root, &listed, error);
+    hewn_result result = compile(&query->on, field, root, &listed, error);
     if (result != HEWN_OK || listed)
         hewn_query_close_device(query);
     return result;
