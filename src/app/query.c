@@ -269,6 +269,7 @@ static hewn_result answer(query_request *request, const hewn_scene *scene, hewn_
     hewn_result result =
         request->other ? ask_clearance(request, scene, &rows, error) : ask_lines(request, scene, &rows, error);
     hewn_progress_end();
+    request->desc.progress = NULL;
     return hewn_rows_close(&rows, result, error);
 }
 
