@@ -1,5 +1,6 @@
 /* Writes the tables of docs/scene.md anew from the catalogue of functions: what stands between a line
- * "<!-- table: NAME -->" and the next "<!-- end -->". Takes the file's path; leaves it alone where nothing changes. */
+ * "<!-- table: NAME -->" and the next "<!-- end -->". Takes the file's path; leaves it alone where nothing changes.
+ * With --names it prints the functions' names, for draw_pictures.sh. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,9 +23,14 @@ static char *read_all(const char *path)
 int main(int count, char **arguments)
 {
     static const char end[] = "<!-- end -->";
+    if (count == 2 && strcmp(arguments[1], "--names") == 0) {
+        for (size_t i = 0; i < hewn_function_count; i++)
+            puts(hewn_functions[i].name);
+        return 0;
+    }
     char *old = count == 2 ? read_all(arguments[1]) : NULL;
     if (!old) {
-        fprintf(stderr, "usage: write_tables docs/scene.md\n");
+        fprintf(stderr, "usage: write_tables docs/scene.md | --names\n");
         return 2;
     }
     hewn_text made = {0};

@@ -25,6 +25,7 @@
 #include "hewn/progressive.h"
 #include "hewn/progressive_job.h"
 #include "hewn/refinement.h"
+#include "hewn/query.h"
 #include "hewn/render.h"
 #include "hewn/render_job.h"
 #include "hewn/repair.h"

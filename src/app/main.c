@@ -6,10 +6,10 @@
 #include "base/clock.h"
 #include "base/error.h"
 
-const hewn_command *const hewn_commands[] = {&hewn_command_mesh,      &hewn_command_info,     &hewn_command_check,
-                                             &hewn_command_repair,    &hewn_command_convert,  &hewn_command_smooth,
-                                             &hewn_command_subdivide, &hewn_command_simplify, &hewn_command_lod,
-                                             &hewn_command_voxelize,  &hewn_command_render,   &hewn_command_devices};
+const hewn_command *const hewn_commands[] = {
+    &hewn_command_mesh,   &hewn_command_info,      &hewn_command_check,    &hewn_command_repair, &hewn_command_convert,
+    &hewn_command_smooth, &hewn_command_subdivide, &hewn_command_simplify, &hewn_command_lod,    &hewn_command_voxelize,
+    &hewn_command_render, &hewn_command_eval,      &hewn_command_query,    &hewn_command_devices};
 const size_t hewn_command_count = sizeof hewn_commands / sizeof *hewn_commands;
 
 static double started;
@@ -29,9 +29,9 @@ const hewn_command *hewn_command_find(const char *name)
 
 static int fail_unknown_command(const char *word)
 {
-    const char *names[16] = {"help", "version"};
+    const char *names[24] = {"help", "version"};
     size_t count = 2;
-    for (size_t i = 0; i < hewn_command_count && count < 16; ++i)
+    for (size_t i = 0; i < hewn_command_count && count < 24; ++i)
         names[count++] = hewn_commands[i]->name;
     const char *nearest = hewn_nearest_name(word, names, count);
     hewn_error error = {0};

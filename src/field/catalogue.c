@@ -452,7 +452,7 @@ static void write_slope(const hewn_function *function, hewn_text *text)
 void hewn_catalogue_write(hewn_section section, hewn_text *text)
 {
     static const char *const exactness[] = {"exact", "exact outside", "bound", "neither"};
-    hewn_text_append(text, "| function | meaning | distance | slope |\n| --- | --- | --- | --- |\n");
+    hewn_text_append(text, "| function | meaning | distance | slope | |\n| --- | --- | --- | --- | --- |\n");
     for (size_t i = 0; i < hewn_function_count; i++) {
         const hewn_function *function = &hewn_functions[i];
         if (function->section != section)
@@ -461,6 +461,6 @@ void hewn_catalogue_write(hewn_section section, hewn_text *text)
         write_call(function, text);
         hewn_text_print(text, "` | %s | %s | ", function->meaning, exactness[function->exactness]);
         write_slope(function, text);
-        hewn_text_append(text, " |\n");
+        hewn_text_print(text, " | ![](pictures/%s.png) |\n", function->name);
     }
 }

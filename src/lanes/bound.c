@@ -31,6 +31,14 @@ static float down(double value)
     return (double)near > value ? nextafterf(near, -INFINITY) : near;
 }
 
+/* The links of an outline are rounded to float, one of them decides, and its root is rounded again. */
+static hewn_interval widened(const hewn_node_data *node, hewn_interval bound, const hewn_interval *place)
+{
+    double far = fmax(fabs(place[0].lo), fabs(place[0].hi)) + fmax(fabs(place[1].lo), fabs(place[1].hi));
+    double error = 0x1p-20 * (far + node->parameter[0]);
+    return (hewn_interval){bound.lo - error, bound.hi + error, false};
+}
+
 static void other(const hewn_lane_tape *tape, const hewn_lane_step *step, const float *values, rows *r, uint32_t count)
 {
     const hewn_node_data *node = &tape->others[step->node];
@@ -46,8 +54,12 @@ static void other(const hewn_lane_tape *tape, const hewn_lane_step *step, const 
         if (sure)
             bound = hewn_op_bound(node, in);
         sure = sure && !bound.maybe_nan;
+        if (sure && node->op == HEWN_OP_OUTLINE)
+            bound = widened(node, bound, &in[1]);
         r->lo[i] = sure ? down(bound.lo) : -INFINITY;
         r->hi[i] = sure ? -down(-bound.hi) : INFINITY;
+        if (sure && node->op == HEWN_OP_EDGE) /* no bound: the value in the middle, on both sides */
+            r->lo[i] = r->hi[i] = (float)bound.lo;
     }
 }
 

@@ -70,31 +70,59 @@ static void choose_direction(hewn_view view, hewn_axis axis, double back[3], dou
     (void)normalise(back);
 }
 
+/* Where a box's corners lie in the picture: `side` and `height` of its middle, for each unit of the way of a pinhole.
+ */
+typedef struct frame {
+    double lo[2], hi[2]; /* sideways, upward */
+} frame;
+
+static frame frame_of(const hewn_box *box, const hewn_camera *camera, const double right[3], const double upward[3],
+                      const double back[3])
+{
+    frame out = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3];
+        for (int i = 0; i < 3; i++)
+            p[i] = (corner >> i & 1 ? box->hi[i] : box->lo[i]) - camera->eye[i];
+        double way = camera->fov > 0 ? -dot(p, back) : 1;
+        const double at[2] = {dot(p, right) / way, dot(p, upward) / way};
+        for (int i = 0; i < 2; i++) {
+            out.lo[i] = fmin(out.lo[i], at[i]);
+            out.hi[i] = fmax(out.hi[i], at[i]);
+        }
+    }
+    return out;
+}
+
 hewn_camera hewn_camera_of_view(hewn_view view, const hewn_box *box, hewn_axis up, double width, double height)
 {
-    const double rim = 0.9, fov = view == HEWN_VIEW_ISO ? 30 : 0;
-    double back[3], right[3], upward[3], far = 0, distance = 0, most = 0;
+    enum { ROUNDS = 24 };
+    const double rim = 0.9, fov = view == HEWN_VIEW_ISO ? 30 : 0, steep = tan(fov / 2 * M_PI / 180);
+    double back[3], right[3], upward[3], size = 0;
     hewn_camera camera = {.fov = fov};
     choose_direction(view, up, back, camera.up);
     cross(camera.up, back, right);
     (void)normalise(right);
     cross(back, right, upward);
-    double steep = rim * tan(fov / 2 * M_PI / 180);
-    for (int corner = 0; corner < 8; corner++) {
-        double p[3];
-        for (int i = 0; i < 3; i++)
-            p[i] = (corner >> i & 1 ? 0.5 : -0.5) * (box->hi[i] - box->lo[i]);
-        double x = fabs(dot(p, right)) * height / width, y = fabs(dot(p, upward)), z = dot(p, back);
-        most = fmax(most, fmax(x, y));
-        far = fmax(far, sqrt(dot(p, p)));
-        if (fov > 0)
-            distance = fmax(distance, fmax(x, y) / steep + z);
-    }
-    camera.height = 2 * most / rim;
-    distance = fov > 0 ? distance : 2 * far;
     for (int i = 0; i < 3; i++) {
         camera.target[i] = 0.5 * (box->lo[i] + box->hi[i]);
-        camera.eye[i] = camera.target[i] + distance * back[i];
+        size += (box->hi[i] - box->lo[i]) * (box->hi[i] - box->lo[i]);
+    }
+    double distance = sqrt(size) * (fov > 0 ? 1 / steep : 1);
+    for (int round = 0; round <= ROUNDS; round++) {
+        for (int i = 0; i < 3; i++)
+            camera.eye[i] = camera.target[i] + distance * back[i];
+        frame seen = frame_of(box, &camera, right, upward, back);
+        double side = seen.hi[0] - seen.lo[0], rise = seen.hi[1] - seen.lo[1];
+        double fills = fmax(side * height / width, rise) / 2;
+        camera.height = 2 * fills / rim;
+        if (fov == 0 || round == ROUNDS)
+            break;
+        /* To the middle of what is seen, and as near as all of it fits. */
+        for (int i = 0; i < 3; i++)
+            camera.target[i] +=
+                distance * (0.5 * (seen.lo[0] + seen.hi[0]) * right[i] + 0.5 * (seen.lo[1] + seen.hi[1]) * upward[i]);
+        distance = fmax(distance * fmin(fills / (rim * steep), 1.2), 0.51 * sqrt(size) * (1 + steep));
     }
     return camera;
 }

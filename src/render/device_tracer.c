@@ -12,10 +12,6 @@ extern const char hewn_text_render_head[], hewn_text_trace[];
 
 enum { CELLS = 48, GROUP = 64, PIECE = 1 << 18 };
 
-/* A bound on the slope counts for nothing where it is this many times the slope that is common: intervals then get on
- * faster. */
-#define STEEPEST 6.0
-
 typedef struct device_tracer {
     hewn_device *device;
     hewn_code *code;
@@ -118,7 +114,7 @@ static struct hewn_trace_push make_push(const device_tracer *tracer, const hewn_
         push.light[axis] = stage->light[axis];
         farthest = fmax(farthest, fmax(fabs(tracer->box.lo[axis]), fabs(tracer->box.hi[axis])));
     }
-    bool bounded = tracer->steepness > 0 && tracer->steepness <= STEEPEST * tracer->slope;
+    bool bounded = tracer->steepness > 0 && tracer->steepness <= HEWN_STEEPEST * tracer->slope;
     push.steepness = bounded ? nextafterf((float)tracer->steepness, INFINITY) : 0;
     push.slack = push.steepness * (float)farthest * 0x1p-18F;
     return push;

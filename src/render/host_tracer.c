@@ -16,13 +16,15 @@ typedef struct host_tracer {
     hewn_octree octree;
     hewn_box box;
     float slope;
+    float steepness; /* no slope is more: rays go on by values over that; 0: by interval bounds */
+    float slack;     /* rounding errors of values are below this */
 } host_tracer;
 
 /* A ray under way. */
 typedef struct walker {
     const hewn_ray *ray;
     const hewn_cell *cell;
-    float t, end, stride, after;
+    float t, begin, end, stride, after;
     uint32_t steps;
     bool met, ran_out, asks;
 } walker;
@@ -155,6 +157,7 @@ static bool find_cell(crew *c, walker *w)
             return true;
         }
         w->t = w->after;
+        w->begin = w->t; /* what is before is free */
     }
     return false;
 }
@@ -227,6 +230,35 @@ static void step_together(crew *c, const hewn_lane_tape *tape, walker *const *gr
     ask_values(c, tape, group, count);
 }
 
+/* Where slopes are bounded (Hart 1996): a value is how far the surface is at least. Where that is less than what is on
+ * the surface, the way is as long as that, and its end is asked next. */
+static void trace_together(crew *c, const hewn_lane_tape *tape, walker *const *group, uint32_t count)
+{
+    hewn_lane_points points;
+    float values[HEWN_LANES];
+    uint32_t lanes = count;
+    for (uint32_t i = 0; i < count; i++) {
+        float p[3];
+        place(group[i]->ray, group[i]->t, p);
+        for (int axis = 0; axis < 3; axis++)
+            points.at[axis][i] = p[axis];
+    }
+    fill_up(&points, &lanes);
+    hewn_lanes_value(tape, &c->work, &points, lanes, values);
+    for (uint32_t i = 0; i < count; i++) {
+        walker *w = group[i];
+        w->steps++;
+        w->met = values[i] <= 0;
+        if (w->met) { /* a step by the value itself ends on the surface, or by rounding a little behind */
+            w->t = fmaxf(w->t - fminf(w->stride, enough(c->stage, w->t)), w->begin);
+            continue;
+        }
+        w->stride = fmaxf((values[i] - c->tracer->slack) / c->tracer->steepness, enough(c->stage, w->t));
+        w->stride = w->stride < FAR_AWAY ? w->stride : enough(c->stage, w->t);
+        w->t += w->stride;
+    }
+}
+
 /* Until all have met something, or ended, or taken `most` steps. */
 static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
 {
@@ -255,7 +287,10 @@ static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
             taken = run_of(sorted, first, left);
             for (uint32_t i = 0; i < taken; i++)
                 group[i] = active[sorted[first + i].number];
-            step_together(c, sorted[first].tape, group, taken);
+            if (c->tracer->steepness > 0)
+                trace_together(c, sorted[first].tape, group, taken);
+            else
+                step_together(c, sorted[first].tape, group, taken);
         }
     }
 }
@@ -265,7 +300,8 @@ static walker start(const crew *c, const hewn_ray *ray)
     const hewn_cell *root = c->tracer->octree.cells;
     walker w = {.ray = ray, .t = ray->begin, .end = ray->end};
     clip(root->lo, root->hi, ray, &w.t, &w.end);
-    w.stride = 0.05F * (root->hi[0] - root->lo[0]);
+    w.begin = w.t;
+    w.stride = c->tracer->steepness > 0 ? 0 : 0.05F * (root->hi[0] - root->lo[0]);
     return w;
 }
 
@@ -487,12 +523,19 @@ hewn_result hewn_tracer_on_host(const hewn_field *field, hewn_node root, const h
     host_tracer *tracer = hewn_alloc_zero(1, sizeof *tracer);
     if (!tracer)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a renderer");
-    double slope = 1;
+    double slope = 1, steepness = INFINITY, far = 0;
     tracer->box = *box;
     hewn_result result = hewn_common_slope(field, root, box, &slope, error);
     if (result == HEWN_OK)
+        result = hewn_steepness_bound(field, root, box, &steepness, error);
+    if (result == HEWN_OK)
         result = hewn_octree_create(field, root, box, &tracer->octree, error);
     tracer->slope = (float)slope;
+    for (int axis = 0; axis < 3; axis++)
+        far = fmax(far, fmax(fabs(box->lo[axis]), fabs(box->hi[axis])));
+    if (steepness > 0 && steepness <= HEWN_STEEPEST * slope)
+        tracer->steepness = nextafterf((float)steepness, INFINITY);
+    tracer->slack = tracer->steepness * (float)far * 0x1p-18F;
     if (result != HEWN_OK)
         hewn_free(tracer);
     else

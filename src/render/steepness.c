@@ -77,6 +77,7 @@ static double unary(hewn_op op, const steep *a)
     case HEWN_OP_ABS:
     case HEWN_OP_SIN:
     case HEWN_OP_COS:
+    case HEWN_OP_ZIGZAG:
     case HEWN_OP_ATAN: return a->bound;
     case HEWN_OP_SQUARE: return times(2 * size(a->range), a->bound);
     case HEWN_OP_SQRT: return times(lo > 0 ? 0.5 / sqrt(lo) : INFINITY, a->bound);
@@ -133,6 +134,7 @@ static double shape(const hewn_node_data *node, const steep *in)
     case HEWN_OP_CYLINDER:
     case HEWN_OP_CAPSULE:
     case HEWN_OP_CONE: return joint(in, 3);
+    case HEWN_OP_OUTLINE: return joint(in + 1, 2); /* a distance, whatever its chain's values do */
     case HEWN_OP_PLANE: return times(length(node->parameter), joint(in, 3));
     case HEWN_OP_AFFINE:
         return times(fabs(node->parameter[0]), in[0].bound) + times(fabs(node->parameter[1]), in[1].bound) +

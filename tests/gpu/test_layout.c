@@ -13,8 +13,10 @@
 #include "gpu/gpu.h"
 #include "shared/iso.h"
 #include "shared/lists.h"
+#include "shared/query.h"
+#include "shared/render.h"
 
-extern const char hewn_text_iso_head[];
+extern const char hewn_text_iso_head[], hewn_text_render_head[], hewn_text_query_head[];
 
 typedef struct member {
     const char *name;
@@ -51,9 +53,9 @@ static int close_device(void **state)
     return messages == 0 ? 0 : -1;
 }
 
-static void write_shader(hewn_text *glsl, const char *type, const member *members, size_t count)
+static void write_shader(hewn_text *glsl, const char *head, const char *type, const member *members, size_t count)
 {
-    hewn_text_append(glsl, hewn_text_iso_head);
+    hewn_text_append(glsl, head);
     hewn_text_append(glsl, "#extension GL_EXT_buffer_reference_uvec2 : require\n#define low(address) uvec2(address).x\n"
                            "layout(local_size_x = 1) in;\n");
     hewn_text_print(glsl,
@@ -65,11 +67,11 @@ static void write_shader(hewn_text *glsl, const char *type, const member *member
     hewn_text_append(glsl, "}\n");
 }
 
-static void check_struct(const char *type, size_t bytes, const member *members, size_t count)
+static void check_struct(const char *head, const char *type, size_t bytes, const member *members, size_t count)
 {
     hewn_error error = {0};
     hewn_text glsl = {0};
-    write_shader(&glsl, type, members, count);
+    write_shader(&glsl, head, type, members, count);
     assert_true(bytes <= 128 && bytes % 4 == 0);
     hewn_program_desc desc = {.name = type, .glsl = glsl.bytes, .push_bytes = (uint32_t)bytes, .uniforms = true};
     hewn_program *program;
@@ -94,10 +96,11 @@ static void check_struct(const char *type, size_t bytes, const member *members, 
     hewn_text_clear(&glsl);
 }
 
-#define CHECK(type, ...)                                                                                               \
+#define CHECK(type, ...) CHECK_IN(hewn_text_iso_head, type, __VA_ARGS__)
+#define CHECK_IN(head, type, ...)                                                                                      \
     do {                                                                                                               \
         const member members[] = {__VA_ARGS__};                                                                        \
-        check_struct(#type, sizeof(struct type), members, sizeof members / sizeof *members);                           \
+        check_struct(head, #type, sizeof(struct type), members, sizeof members / sizeof *members);                     \
     } while (0)
 
 static void test_field_kernels(void **state)
@@ -240,12 +243,34 @@ static void test_dual_kernels(void **state)
           A(hewn_dual_fan_push, normals), A(hewn_dual_fan_push, indices));
 }
 
+static void test_rays_and_questions(void **state)
+{
+    (void)state;
+    CHECK_IN(hewn_text_render_head, hewn_trace_push, MEMBER(hewn_trace_push, rays, ADDRESS),
+             MEMBER(hewn_trace_push, hits, ADDRESS), MEMBER(hewn_trace_push, cells, ADDRESS),
+             MEMBER(hewn_trace_push, lo[0], REAL), MEMBER(hewn_trace_push, hi[2], REAL),
+             MEMBER(hewn_trace_push, light[1], REAL), MEMBER(hewn_trace_push, softness, REAL),
+             MEMBER(hewn_trace_push, reach, REAL), MEMBER(hewn_trace_push, ground, REAL),
+             MEMBER(hewn_trace_push, steepness, REAL), MEMBER(hewn_trace_push, slope, REAL),
+             MEMBER(hewn_trace_push, slack, REAL), MEMBER(hewn_trace_push, nearness, REAL),
+             MEMBER(hewn_trace_push, spread, REAL), MEMBER(hewn_trace_push, count, NUMBER),
+             MEMBER(hewn_trace_push, cells_across, NUMBER), MEMBER(hewn_trace_push, up, NUMBER),
+             MEMBER(hewn_trace_push, flags, NUMBER));
+    CHECK_IN(hewn_text_query_head, hewn_query_push, MEMBER(hewn_query_push, questions, ADDRESS),
+             MEMBER(hewn_query_push, answers, ADDRESS), MEMBER(hewn_query_push, lo[0], REAL),
+             MEMBER(hewn_query_push, hi[2], REAL), MEMBER(hewn_query_push, tolerance, REAL),
+             MEMBER(hewn_query_push, fine, REAL), MEMBER(hewn_query_push, steepness, REAL),
+             MEMBER(hewn_query_push, wide_steepness, REAL), MEMBER(hewn_query_push, count, NUMBER),
+             MEMBER(hewn_query_push, levels, NUMBER), MEMBER(hewn_query_push, most_steps, NUMBER));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_field_kernels),     cmocka_unit_test(test_fixed_kernels),
-        cmocka_unit_test(test_trilinear_kernels), cmocka_unit_test(test_dual_kernels),
-        cmocka_unit_test(test_suspect_kernels),   cmocka_unit_test(test_list_kernels),
+        cmocka_unit_test(test_rays_and_questions), cmocka_unit_test(test_field_kernels),
+        cmocka_unit_test(test_fixed_kernels),      cmocka_unit_test(test_trilinear_kernels),
+        cmocka_unit_test(test_dual_kernels),       cmocka_unit_test(test_suspect_kernels),
+        cmocka_unit_test(test_list_kernels),
     };
     return cmocka_run_group_tests_name("layout", tests, open_device, close_device);
 }

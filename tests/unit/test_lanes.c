@@ -178,9 +178,46 @@ static void test_image(void **state)
     hewn_field_destroy(&field);
 }
 
+/* Outlines have bounds, which hold what values are, links rounded to float and all. */
+static void test_outlines(void **state)
+{
+    (void)state;
+    uint64_t random = 11;
+    hewn_field *field;
+    assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+    hewn_node star = hewn_extrude(field, hewn_star(field, 7, 0.9, 0.35), 0.5);
+    assert_int_equal(hewn_field_set_root(field, hewn_rotate(field, star, 1, 2, 3, 0.7), NULL), HEWN_OK);
+    hewn_lane_work work;
+    hewn_lane_tape *tape = whole_of(field, &work);
+    for (int round = 0; round < 200; round++) {
+        hewn_lane_boxes boxes;
+        hewn_lane_points points;
+        float lo[HEWN_LANES], hi[HEWN_LANES], values[HEWN_LANES];
+        for (int i = 0; i < HEWN_LANE_BLOCK; i++)
+            for (int axis = 0; axis < 3; axis++) {
+                double middle = uniform(&random), size = 0.2 * pow(2, -0.1 * round);
+                boxes.lo[axis][i] = (float)(middle - size);
+                boxes.hi[axis][i] = (float)(middle + size);
+            }
+        hewn_lanes_bound(tape, &work, &boxes, HEWN_LANE_BLOCK, lo, hi);
+        random_points(&boxes, 3, &random, &points);
+        hewn_lanes_value(tape, &work, &points, HEWN_LANES, values);
+        assert_true(isfinite(lo[3]) && isfinite(hi[3]));
+        for (int i = 0; i < HEWN_LANES; i++) {
+            double p[3] = {(double)points.at[0][i], (double)points.at[1][i], (double)points.at[2][i]}, expected;
+            assert_int_equal(hewn_field_eval(field, hewn_field_root(field), p, 1, &expected, NULL), HEWN_OK);
+            assert_true(lo[3] <= values[i] && values[i] <= hi[3]);
+            assert_true(fabs((double)values[i] - expected) < 1e-5);
+        }
+    }
+    hewn_lane_work_destroy(&work);
+    hewn_lane_tape_destroy(&tape);
+    hewn_field_destroy(&field);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_cuts),
-                                       cmocka_unit_test(test_image)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_outlines), cmocka_unit_test(test_values),
+                                       cmocka_unit_test(test_cuts), cmocka_unit_test(test_image)};
     return cmocka_run_group_tests_name("lanes", tests, NULL, NULL);
 }

@@ -37,11 +37,12 @@ static const room rooms[] = {
     {"eval", "base geom field gpu"},
     {"iso", "base geom volume field gpu eval"},
     {"render", "base geom field lanes gpu eval"},
+    {"query", "base geom field lanes gpu eval render"},
     {"font", "base field"},
     {"scene", "base geom field font"},
     {"io", "base geom volume mesh progressive clusters field"},
     {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod progressive clusters field lanes voxelize "
-                 "gpu eval iso render font scene io"},
+                 "gpu eval iso render query font scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -94,6 +95,7 @@ static const header headers[] = {
     {"heights", "io"},
     {"voxelize", "voxelize"},
     {"voxelize_job", "pipeline"},
+    {"query", "query"},
 };
 
 static bool has_word(const char *words, const char *word, size_t length)

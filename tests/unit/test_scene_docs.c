@@ -163,10 +163,36 @@ static void test_tables_are_the_catalogue(void **state)
     free(text);
 }
 
+/* Each function of the tables has a picture, and a scene that it is drawn from; no scene is of none. */
+static void test_every_function_has_a_picture(void **state)
+{
+    (void)state;
+    char path[512], line[80];
+    size_t length, scenes = 0;
+    snprintf(path, sizeof path, "%s/docs/pictures/examples.txt", test_source_root());
+    char *examples = test_read(path, &length);
+    assert_non_null(examples);
+    for (size_t i = 0; i < hewn_function_count; i++) {
+        snprintf(path, sizeof path, "%s/docs/pictures/%s.png", test_source_root(), hewn_functions[i].name);
+        char *picture = test_read(path, &length);
+        if (!picture || length < 1000 || memcmp(picture, "\x89PNG", 4) != 0)
+            fail_msg("%s is no picture; ./dev docs draws it", path);
+        free(picture);
+        snprintf(line, sizeof line, "\n%s: ", hewn_functions[i].name);
+        if (!strstr(examples, line))
+            fail_msg("docs/pictures/examples.txt has no line for %s", hewn_functions[i].name);
+    }
+    for (const char *at = examples; (at = strchr(at, '\n')) != NULL && at[1]; at++)
+        scenes += at[1] != '#';
+    assert_int_equal(scenes, hewn_function_count);
+    free(examples);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tables_are_the_catalogue),
+        cmocka_unit_test(test_every_function_has_a_picture),
         cmocka_unit_test(test_examples_run),
         cmocka_unit_test(test_every_function_has_a_row),
         cmocka_unit_test(test_methods_are_as_told),

@@ -1,0 +1,132 @@
+#include "app/number_lines.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+
+enum { LONGEST = 4096 };
+
+struct hewn_number_lines {
+    FILE *file;
+    const char *path;
+    const char *name; /* for messages */
+    const char *what;
+    uint32_t width;
+    uint32_t line;
+    uint32_t *places; /* the line of each row of the last part */
+    size_t place_capacity;
+    char text[LONGEST + 2];
+};
+
+hewn_result hewn_number_lines_open(const char *path, uint32_t width, const char *what, hewn_number_lines **out,
+                                   hewn_error *error)
+{
+    *out = hewn_alloc_zero(1, sizeof **out);
+    if (!*out)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a file");
+    bool standard = strcmp(path, "-") == 0;
+    **out = (hewn_number_lines){.path = path, .name = standard ? "standard input" : path, .what = what, .width = width};
+    (*out)->file = standard ? stdin : fopen(path, "rb");
+    struct stat status;
+    hewn_result result = HEWN_OK;
+    if (!(*out)->file)
+        result = hewn_fail_at(error, HEWN_IO, path, 0, "cannot open: %s", strerror(errno));
+    else if (fstat(fileno((*out)->file), &status) == 0 && S_ISDIR(status.st_mode))
+        result = hewn_fail_at(error, HEWN_IO, path, 0, "it is a folder");
+    if (result != HEWN_OK)
+        hewn_number_lines_close(out);
+    return result;
+}
+
+void hewn_number_lines_close(hewn_number_lines **lines)
+{
+    if (*lines && (*lines)->file && (*lines)->file != stdin)
+        fclose((*lines)->file);
+    if (*lines)
+        hewn_free((*lines)->places);
+    hewn_free(*lines);
+    *lines = NULL;
+}
+
+static hewn_result refuse(const hewn_number_lines *lines, const char *format, const char *word, hewn_error *error)
+{
+    char why[160];
+    snprintf(why, sizeof why, format, word);
+    return hewn_fail_at(error, HEWN_BAD_INPUT, lines->name, lines->line, "%s; %s", why, lines->what);
+}
+
+/* A line without its end; *length is negative where the file has none left. */
+static hewn_result next_line(hewn_number_lines *lines, long *length, hewn_error *error)
+{
+    long count = 0;
+    int c;
+    lines->line++;
+    while ((c = getc_unlocked(lines->file)) != EOF && c != '\n') {
+        if (count == LONGEST)
+            return refuse(lines, "the line is longer than 4,096 characters%s", "", error);
+        lines->text[count++] = (char)c;
+    }
+    if (c == EOF && ferror(lines->file))
+        return hewn_fail_at(error, HEWN_IO, lines->name, 0, "cannot read: %s", strerror(errno));
+    lines->text[count] = '\0';
+    *length = c == EOF && count == 0 ? -1 : count;
+    return HEWN_OK;
+}
+
+static hewn_result read_row(const hewn_number_lines *lines, double *row, uint32_t *count, hewn_error *error)
+{
+    static const char between[] = " \t\r,;";
+    *count = 0;
+    for (const char *at = lines->text + strspn(lines->text, between); *at && *at != '#'; at += strspn(at, between)) {
+        char word[64], *end;
+        size_t length = strcspn(at, " \t\r,;#");
+        snprintf(word, sizeof word, "%.*s", (int)(length < 48 ? length : 48), at);
+        if (length >= 48 || strspn(word, "0123456789+-.eE") != length)
+            return refuse(lines, "'%s' is not a finite number", word, error);
+        double value = strtod(word, &end);
+        if (*end || !isfinite(value))
+            return refuse(lines, "'%s' is not a finite number", word, error);
+        if (*count < lines->width)
+            row[*count] = value;
+        ++*count;
+        at += length;
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_number_lines_read(hewn_number_lines *lines, double *rows, size_t most, size_t *count,
+                                   hewn_error *error)
+{
+    *count = 0;
+    HEWN_TRY(hewn_reserve((void **)&lines->places, &lines->place_capacity, most, sizeof *lines->places, error));
+    while (*count < most) {
+        long length = -1;
+        uint32_t found;
+        HEWN_TRY(next_line(lines, &length, error));
+        if (length < 0)
+            return HEWN_OK;
+        if (strlen(lines->text) != (size_t)length)
+            return refuse(lines, "the line has a zero byte%s", "", error);
+        HEWN_TRY(read_row(lines, rows + *count * lines->width, &found, error));
+        if (found == 0)
+            continue;
+        char number[16];
+        snprintf(number, sizeof number, "%u", found);
+        if (found != lines->width)
+            return refuse(lines, "the line has %s numbers", number, error);
+        lines->places[*count] = lines->line;
+        ++*count;
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_number_lines_refuse(const hewn_number_lines *lines, size_t index, const char *why, hewn_error *error)
+{
+    return hewn_fail_at(error, HEWN_BAD_INPUT, lines->name, lines->places[index], "%s; %s", why, lines->what);
+}
