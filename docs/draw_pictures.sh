@@ -7,7 +7,7 @@ build=$1
 shift
 names=("$@")
 [ ${#names[@]} -gt 0 ] || mapfile -t names < <("$build/docs/write_tables" --names)
-scene=$(mktemp --suffix=.lua)
+scene=$(mktemp --suffix=.lua assets/scenes/picture-XXXXXX) # beside the files that scenes may read
 trap 'rm -f -- "$scene"' EXIT
 for name in "${names[@]}"; do
     example=$(sed -n "s/^$name: //p" docs/pictures/examples.txt)

@@ -258,8 +258,8 @@ const hewn_command hewn_command_render = {
     .summary = "make a picture of a scene or a mesh",
     .usage = "SCENE|MESH -o FILE.png [OPTION]...",
     .about = "Follows rays to the surface of a scene's field (.lua, .vm), or of a mesh (.glb,\n"
-             ".gltf, .obj, .ply, .stl, .off), and lights it. Nothing of a field is meshed and no\n"
-             "surface is stepped over, however steep the field is.\n",
+             ".gltf, .obj, .ply, .stl, .off), and lights it. Nothing of a field is meshed, and\n"
+             "no surface is stepped over, however steep the field is.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
