@@ -27,7 +27,8 @@
         {0, "max-memory", "SIZE",                                                                                      \
          "Mesh a volume in parts that take at most SIZE bytes of memory; K, M and G stand for 2^10, 2^20 and 2^30. A " \
          "raw, .nrrd, .mha or .nii file that is not compressed is read slab by slab. The parts wait on disk beside "   \
-         "the output, and the mesh is the same. Default: no limit."},                                                  \
+         "the output, and the mesh is the same. Default: no limit. What is sampled into a volume is refused where it " \
+         "takes more. Default: 2G."},                                                                                  \
     {                                                                                                                  \
         0, "threads", "N", "Mesh a volume with N threads. Default: one for each processor."                            \
     }

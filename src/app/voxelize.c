@@ -6,6 +6,7 @@ static const hewn_option options[] = {
      "Write the volume to FILE; its extension (.vdb, .nrrd) names the format. `-` is standard output, with --to. "
      "Required."},
     HEWN_OPTIONS_VOXELIZE,
+    HEWN_OPTION_MOST_SAMPLES,
     {0, "unit", "UNIT", "A mesh is in UNIT: m, cm, mm, um, km, in or ft. Default: what the file says."},
     {0, "from", "FORMAT",
      "Read the file as lua or vm, or as a mesh in glb, gltf, obj, ply, stl or off. Default: by its extension; needed "

@@ -10,7 +10,7 @@
 #include "app/scene_arguments.h"
 #include "base/error.h"
 
-static const char *const own[] = {"cell", "band", "dense", "bounds", "memory", "D", "allow-path"};
+static const char *const own[] = {"cell", "band", "dense", "bounds", "D", "allow-path"};
 
 static bool is_scene(const char *path)
 {
@@ -58,7 +58,8 @@ typedef struct request {
 static hewn_result read_sizes(const hewn_arguments *arguments, request *wanted, hewn_error *error)
 {
     const char *cell = hewn_arguments_value(arguments, "cell"), *band = hewn_arguments_value(arguments, "band");
-    const char *memory = hewn_arguments_value(arguments, "memory"), *bounds = hewn_arguments_value(arguments, "bounds");
+    const char *memory = hewn_arguments_value(arguments, "max-memory"),
+               *bounds = hewn_arguments_value(arguments, "bounds");
     hewn_voxelize_job_desc *desc = &wanted->desc;
     if (cell)
         HEWN_TRY(hewn_number_parse(cell, "--cell", &desc->cell, error));
@@ -68,10 +69,8 @@ static hewn_result read_sizes(const hewn_arguments *arguments, request *wanted, 
         HEWN_TRY(hewn_number_parse(band, "--band", &desc->band, error));
     if (band && !(desc->band >= 1 && desc->band <= 100))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--band is from 1 to 100 cells, not %s", band);
-    uint32_t mebibytes = 0;
     if (memory)
-        HEWN_TRY(hewn_count_parse(memory, "--memory", 1, &mebibytes, error));
-    desc->memory_limit = (uint64_t)mebibytes << 20;
+        HEWN_TRY(hewn_bytes_parse(memory, "--max-memory", &desc->memory_limit, error));
     desc->dense = hewn_arguments_has(arguments, "dense");
     if (bounds)
         HEWN_TRY(hewn_bounds_parse(bounds, "--bounds", &wanted->bounds, error));

@@ -11,10 +11,17 @@
         {0, "dense", NULL, "Keep all distances of the box, not those near the surface alone."},                        \
         {0, "bounds", "BOX",                                                                                           \
          "The part of a scene to sample, x0,y0,z0,x1,y1,z1. Default: the scene's own, or found from its field."},      \
-        {0, "memory", "MIB", "Refuse samples that would take more than so many MiB. Default: 2048."},                  \
         {'D', NULL, "NAME=VALUE", "Set a parameter of a scene. May be repeated."},                                     \
     {                                                                                                                  \
         0, "allow-path", NULL, "Let a scene read files outside its own folder."                                        \
+    }
+
+/* As `hewn convert` has it for volumes too. */
+#define HEWN_OPTION_MOST_SAMPLES                                                                                       \
+    {                                                                                                                  \
+        0, "max-memory", "SIZE",                                                                                       \
+            "Refuse samples that would take more than SIZE bytes; K, M and G stand for 2^10, 2^20 and 2^30. Default: " \
+            "2G."                                                                                                      \
     }
 
 /* Whether the arguments ask for a volume of a scene or a mesh: by the input's or the output's name, --from or --to. */
@@ -23,8 +30,8 @@ bool hewn_voxelize_wanted(const hewn_arguments *arguments);
 /* HEWN_INVALID_ARGUMENT where one of these options is given, for conversions of other kinds. */
 hewn_result hewn_voxelize_refuse(const hewn_arguments *arguments, hewn_error *error);
 
-/* Runs it all, and returns the exit code. The table of options has those above, output, from, to, unit, report and
- * quiet. */
+/* Runs it all, and returns the exit code. The table of options has those above, max-memory, output, from, to, unit,
+ * report and quiet. */
 int hewn_voxelize_run(const hewn_command *command, const hewn_arguments *arguments);
 
 #endif
