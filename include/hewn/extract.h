@@ -45,8 +45,8 @@ typedef struct hewn_extract_desc {
      * ones, see docs/extraction.md; 0: all cells are of one size. Not together with `quads`. */
     double adaptive;
     /* Bytes that a run may take at once, of the device and the host together (of the host: what the run itself and a
-     * sink take; not the program, the field, the driver and what they held before); 0: no limit. A single mesh that does
-     * not fit is HEWN_OUT_OF_DEVICE_MEMORY; hewn_extract_parts() makes the parts as large as fit. */
+     * sink take; not the program, the field, the driver and what they held before); 0: no limit. A single mesh that
+     * does not fit is HEWN_OUT_OF_DEVICE_MEMORY; hewn_extract_parts() makes the parts as large as fit. */
     uint64_t max_memory;
     const hewn_progress *progress;
 } hewn_extract_desc;
@@ -83,9 +83,9 @@ typedef struct hewn_extract_stats {
     uint64_t uniform_vertices, uniform_triangles; /* before the merges */
     uint64_t octree_merges, pair_merges;          /* in nodes of the octree, and afterwards of neighbours */
     /* By hewn_extract_parts(): */
-    uint64_t parts;                 /* that the mesh came in */
-    uint64_t peak_memory;           /* most bytes in use at once, as max_memory counts them */
-    uint64_t vertices, triangles;   /* of the whole */
+    uint64_t parts;               /* that the mesh came in */
+    uint64_t peak_memory;         /* most bytes in use at once, as max_memory counts them */
+    uint64_t vertices, triangles; /* of the whole */
     hewn_extract_stage stages[8];
     uint32_t stage_count;
 } hewn_extract_stats;

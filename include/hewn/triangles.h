@@ -65,8 +65,9 @@ typedef struct hewn_triangle_run {
     const uint32_t *indices; /* count × 3: numbers of the whole mesh's vertices, also of such as are still to come */
 } hewn_triangle_run;
 
-/* A part of a mesh. Each vertex and triangle comes once, at the place that it has in the whole; runs may be empty. `open`
- * tells, in ascending order, the vertices that are still to come or that triangles of later parts may still name. */
+/* A part of a mesh. Each vertex and triangle comes once, at the place that it has in the whole; runs may be empty.
+ * `open` tells, in ascending order, the vertices that are still to come or that triangles of later parts may still
+ * name. */
 typedef struct hewn_mesh_part {
     hewn_vertex_run vertices[2];
     hewn_triangle_run triangles[2];
@@ -89,9 +90,9 @@ typedef struct hewn_certifier hewn_certifier;
 HEWN_API hewn_result hewn_certifier_create(hewn_certifier **out, hewn_error *error);
 HEWN_API void hewn_certifier_destroy(hewn_certifier **certifier);
 
-/* HEWN_BAD_INPUT for a position that is not finite; HEWN_INVALID_ARGUMENT for a vertex that comes twice or is named when
- * it is no longer open; HEWN_LIMIT for parts of 2^32 corners; HEWN_OUT_OF_MEMORY. After an error the certifier can only
- * be destroyed. */
+/* HEWN_BAD_INPUT for a position that is not finite; HEWN_INVALID_ARGUMENT for a vertex that comes twice or is named
+ * when it is no longer open; HEWN_LIMIT for parts of 2^32 corners; HEWN_OUT_OF_MEMORY. After an error the certifier can
+ * only be destroyed. */
 HEWN_API hewn_result hewn_certifier_take(hewn_certifier *certifier, const hewn_mesh_part *part, hewn_error *error);
 
 /* As the sink's, for hewn_certifier_take(). */

@@ -4,8 +4,8 @@
 
 #include "iso/brick.h"
 
-/* The vertex on an edge of the cell at `sample_at`: the brick that owns the edge knows its rank. Where a part of the grid
- * ends, nobody may own it: then what comes out is some number, and of no use. */
+/* The vertex on an edge of the cell at `sample_at`: the brick that owns the edge knows its rank. Where a part of the
+ * grid ends, nobody may own it: then what comes out is some number, and of no use. */
 uint edge_vertex(Uints links, Uints edges, uint slot, uvec3 sample_at, uint edge)
 {
     uint axis = edge >> 2;

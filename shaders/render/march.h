@@ -45,7 +45,8 @@ void step_by_spheres(inout March m, vec3 from, vec3 along, float near_enough)
     vec3 p = from + m.t * along;
     float value = field_point(p.x, p.y, p.z);
     float radius = (value - push.slack) / push.steepness;
-    if (m.relaxation > 1.0 && radius + m.free < m.last) { /* the spheres do not touch: back to the end of the last one */
+    if (m.relaxation > 1.0 &&
+        radius + m.free < m.last) { /* the spheres do not touch: back to the end of the last one */
         m.t += m.free - m.last;
         m.relaxation = 1.0;
         m.free = m.last = 0.0;

@@ -59,8 +59,8 @@ struct hewn_compact_push {
     HEWN_UINTS kept;    /* out: packed coordinates */
 };
 
-/* Takes blocks back that a part of the grid does not need. Bricks are numbered in their order: by blocks of the top level,
- * x fastest, and within a block by its children. */
+/* Takes blocks back that a part of the grid does not need. Bricks are numbered in their order: by blocks of the top
+ * level, x fastest, and within a block by its children. */
 struct hewn_clip_push {
     HEWN_UINT dense[3]; /* as above */
     HEWN_UINT tested;

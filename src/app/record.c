@@ -60,8 +60,9 @@ static void print_number(uint64_t count, const char *one, const char *many)
 
 static void print_losses(const hewn_file_report *report)
 {
-    static const char *const names[] = {[HEWN_MESH_GLB] = "GLB", [HEWN_MESH_OBJ] = "OBJ", [HEWN_MESH_PLY] = "PLY",
-                                        [HEWN_MESH_STL] = "STL", [HEWN_MESH_OFF] = "OFF", [HEWN_MESH_3MF] = "3MF", [HEWN_MESH_HPM] = "HPM"};
+    static const char *const names[] = {
+        [HEWN_MESH_GLB] = "GLB", [HEWN_MESH_OBJ] = "OBJ", [HEWN_MESH_PLY] = "PLY", [HEWN_MESH_STL] = "STL",
+        [HEWN_MESH_OFF] = "OFF", [HEWN_MESH_3MF] = "3MF", [HEWN_MESH_HPM] = "HPM"};
     const hewn_file_losses *lost = &report->losses;
     const char *between = "";
     if (!lost->cut_faces && !lost->channel_count && !lost->rounded && !lost->isolated && !lost->rejoined)

@@ -99,8 +99,8 @@ const hewn_node_data *hewn_field_node(const hewn_field *field, uint32_t id)
  */
 
 /* Nodes compare by their bytes: no padding, and what an operation does not use is set to one value. */
-_Static_assert(sizeof(hewn_node_data) ==
-                   sizeof(hewn_op) + HEWN_MAX_OPERANDS * sizeof(uint32_t) + HEWN_MAX_PARAMETERS * sizeof(double) + sizeof(void *),
+_Static_assert(sizeof(hewn_node_data) == sizeof(hewn_op) + HEWN_MAX_OPERANDS * sizeof(uint32_t) +
+                                             HEWN_MAX_PARAMETERS * sizeof(double) + sizeof(void *),
                "a node has no padding");
 
 static size_t home_slot(const hewn_field *field, const hewn_node_data *data)
@@ -163,8 +163,8 @@ static hewn_result hold(hewn_field *field, const hewn_sampling *sampling, hewn_e
         if (field->samplings[i] == sampling)
             return HEWN_OK;
     void *items = field->samplings;
-    HEWN_TRY(hewn_reserve(&items, &field->sampling_capacity, field->sampling_count + 1, sizeof *field->samplings,
-                          error));
+    HEWN_TRY(
+        hewn_reserve(&items, &field->sampling_capacity, field->sampling_count + 1, sizeof *field->samplings, error));
     field->samplings = items;
     field->samplings[field->sampling_count++] = hewn_sampling_share(sampling);
     return HEWN_OK;

@@ -72,8 +72,8 @@
  * edge. */
 #define HEWN_OUTLINE_START 1e29
 
-/* Paint has its operand's value. What evaluates fields passes it over, so that a field with paint and one without are the
- * same code; paint.c evaluates what it says. */
+/* Paint has its operand's value. What evaluates fields passes it over, so that a field with paint and one without are
+ * the same code; paint.c evaluates what it says. */
 
 /* The blends, with d = |a-b|, k the parameter; all are min(a, b) where not d < k, and never give NaN but for NaN:
  *   quadratic    min(a, b) - h² / (4 k),   h = k - d

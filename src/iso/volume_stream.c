@@ -92,8 +92,8 @@ static hewn_result note(stream *of, uint64_t bytes, hewn_error *error)
     return HEWN_OK;
 }
 
-/* The end of the largest slab from `begin` on, of at most `most` slices, that leaves an eighth of the memory free, which
- * the program itself and the heap's own tables take; of one slice in any case. */
+/* The end of the largest slab from `begin` on, of at most `most` slices, that leaves an eighth of the memory free,
+ * which the program itself and the heap's own tables take; of one slice in any case. */
 static uint32_t find_end(const stream *of, uint32_t begin, uint32_t most,
                          uint64_t (*bytes)(const stream *, uint32_t, uint32_t))
 {

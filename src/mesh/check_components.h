@@ -6,16 +6,19 @@
 
 #include "mesh/star.h"
 
-/* --- trees of vertices ---------------------------------------------------------------------------------------------- */
+/* --- trees of vertices ----------------------------------------------------------------------------------------------
+ */
 
 /* Trees of vertices joined by faces: the parent of each, its own where it is a root, which has the least number of its
- * tree. A root with a face that has sides stands for one component, and `count` is how many there are. To be freed. HEWN_OUT_OF_MEMORY. */
+ * tree. A root with a face that has sides stands for one component, and `count` is how many there are. To be freed.
+ * HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_trees_grow(const hewn_face_view *view, const hewn_stars *stars, _Atomic uint32_t **out,
                             uint64_t *count, hewn_error *error);
 uint32_t hewn_trees_root(_Atomic uint32_t *parent, uint32_t v);
 void hewn_trees_join(_Atomic uint32_t *parent, uint32_t a, uint32_t b);
 
-/* --- components ----------------------------------------------------------------------------------------------------- */
+/* --- components -----------------------------------------------------------------------------------------------------
+ */
 
 /* Slots 0 to listed - 1 are components, those of most faces first (of as many, that with the lowest vertex); slot
  * `listed` is all the rest, and the vertices of no face. */

@@ -6,34 +6,21 @@
 #include <string.h>
 
 #include "base/alloc.h"
-#include "base/clock.h"
 #include "base/error.h"
 #include "pipeline/frame.h"
 #include "pipeline/json_parts.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
+#include "pipeline/stages.h"
 
 typedef struct clusters_job {
     const hewn_clusters_job_desc *desc;
     hewn_clusters_report *report;
-    double began, stage;
+    hewn_stages stages;
     hewn_frame frame;
     hewn_model model;
     hewn_clusters clusters;
 } clusters_job;
-
-static void begin_stage(clusters_job *job)
-{
-    job->stage = hewn_clock_now() - job->began;
-}
-
-static void end_stage(clusters_job *job, const char *name)
-{
-    hewn_report_stage *stage = &job->report->stages[job->report->stage_count++];
-    snprintf(stage->name, sizeof stage->name, "%s", name);
-    stage->begin = job->stage;
-    stage->end = hewn_clock_now() - job->began;
-}
 
 /* --- the stages --------------------------------------------------------------------------------------------------- */
 
@@ -79,7 +66,7 @@ static hewn_result load(clusters_job *job, hewn_error *error)
     const hewn_clusters_job_desc *desc = job->desc;
     const hewn_read_desc read = {.format = job->report->from, .progress = desc->progress};
     hewn_conversion conversion;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_model_read(desc->input, &read, &job->model, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
@@ -91,7 +78,7 @@ static hewn_result load(clusters_job *job, hewn_error *error)
     }
     HEWN_TRY(hewn_model_convert(&job->model, job->frame.unit, job->frame.up, &conversion, error));
     HEWN_TRY(round_positions(job, error));
-    end_stage(job, "load");
+    hewn_stage_end(&job->stages, "load");
     return HEWN_OK;
 }
 
@@ -119,22 +106,22 @@ static hewn_result make(clusters_job *job, hewn_error *error)
 {
     hewn_clusters_desc desc = job->desc->clusters;
     desc.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_clusters_make(&job->model, &desc, &job->clusters, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, job->desc->input, error);
-    end_stage(job, "simplify");
+    hewn_stage_end(&job->stages, "simplify");
     return describe(job, error);
 }
 
 static hewn_result write(clusters_job *job, hewn_error *error)
 {
     char name[256];
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_path_stem(job->desc->output, name, sizeof name);
     const hewn_write_desc desc = {.name = name, .progress = job->desc->progress};
     HEWN_TRY(hewn_clusters_write_glb(&job->clusters, &job->model, job->desc->output, &desc, error));
-    end_stage(job, "write");
+    hewn_stage_end(&job->stages, "write");
     return HEWN_OK;
 }
 
@@ -155,11 +142,14 @@ static hewn_result run(clusters_job *job, hewn_error *error)
 hewn_result hewn_clusters_file(const hewn_clusters_job_desc *desc, hewn_clusters_report *out, hewn_error *error)
 {
     *out = (hewn_clusters_report){0};
-    clusters_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
+    clusters_job job = {.desc = desc,
+                        .report = out,
+                        .stages = hewn_stages_start(desc->began, out->stages, sizeof out->stages / sizeof *out->stages,
+                                                    &out->stage_count)};
     hewn_result result = run(&job, error);
     hewn_model_destroy(&job.model);
     hewn_clusters_destroy(&job.clusters);
-    out->seconds = hewn_clock_now() - job.began;
+    out->seconds = hewn_stages_seconds(&job.stages);
     out->peak_host_bytes = hewn_peak_host_bytes();
     if (result == HEWN_OK && desc->report)
         result = hewn_clusters_report_write(out, desc->report, error);

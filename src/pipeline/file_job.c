@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/alloc.h"
-#include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "pipeline/frame.h"
@@ -12,32 +11,17 @@
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
 #include "pipeline/smooth_step.h"
+#include "pipeline/stages.h"
 #include "pipeline/subdivide_step.h"
 
 /* A job under way. */
 typedef struct file_job {
     const hewn_file_job_desc *desc;
     hewn_file_report *report;
-    double began, stage; /* when the job and the stage began */
+    hewn_stages stages;
     hewn_frame frame;
     hewn_model model;
 } file_job;
-
-static void begin_stage(file_job *job)
-{
-    job->stage = hewn_clock_now() - job->began;
-}
-
-static void end_stage(file_job *job, const char *name)
-{
-    hewn_file_report *report = job->report;
-    if (report->stage_count == sizeof report->stages / sizeof *report->stages)
-        return;
-    hewn_report_stage *stage = &report->stages[report->stage_count++];
-    snprintf(stage->name, sizeof stage->name, "%s", name);
-    stage->begin = job->stage;
-    stage->end = hewn_clock_now() - job->began;
-}
 
 /* --- before any work --------------------------------------------------------------------------------------------- */
 
@@ -63,7 +47,7 @@ static hewn_result load(file_job *job, hewn_error *error)
     const hewn_file_job_desc *desc = job->desc;
     hewn_file_report *report = job->report;
     hewn_read_desc read = {.format = report->from, .progress = desc->progress};
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_model_read(desc->input, &read, &job->model, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
@@ -79,7 +63,7 @@ static hewn_result load(file_job *job, hewn_error *error)
         model->up = *desc->up;
         model->up_known = true;
     }
-    end_stage(job, "load");
+    hewn_stage_end(&job->stages, "load");
     return HEWN_OK;
 }
 
@@ -88,7 +72,7 @@ static hewn_result repair(file_job *job, hewn_error *error)
     hewn_file_report *report = job->report;
     hewn_repair_desc desc = *job->desc->repair;
     desc.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_mesh *mesh = NULL;
     hewn_result result = hewn_mesh_from_model(&job->model, &desc, &mesh, &report->repair, error);
     if (result != HEWN_OK)
@@ -103,21 +87,21 @@ static hewn_result repair(file_job *job, hewn_error *error)
     hewn_model_destroy(&job->model);
     job->model = repaired;
     report->repaired = true;
-    end_stage(job, "repair");
+    hewn_stage_end(&job->stages, "repair");
     return HEWN_OK;
 }
 
 static hewn_result subdivide(file_job *job, hewn_error *error)
 {
     hewn_file_report *report = job->report;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result =
         hewn_subdivide_step(&job->model, job->desc->subdivide, job->desc->progress, &report->subdivide, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, job->desc->input, error);
     report->subdivided = true;
     report->scheme = job->desc->subdivide->desc.scheme;
-    end_stage(job, "subdivide");
+    hewn_stage_end(&job->stages, "subdivide");
     return HEWN_OK;
 }
 
@@ -128,25 +112,25 @@ static hewn_result simplify(file_job *job, hewn_error *error)
     desc.labels = NULL;
     desc.frozen = NULL;
     desc.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_model_simplify(&job->model, &desc, &report->simplify, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, job->desc->input, error);
     report->simplified = true;
-    end_stage(job, "simplify");
+    hewn_stage_end(&job->stages, "simplify");
     return HEWN_OK;
 }
 
 static hewn_result smooth(file_job *job, hewn_error *error)
 {
     hewn_file_report *report = job->report;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_smooth_step(&job->model, job->desc->smooth, job->desc->progress, &report->smooth, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, job->desc->input, error);
     report->smoothed = true;
     report->smooth_method = job->desc->smooth->desc.method;
-    end_stage(job, "smooth");
+    hewn_stage_end(&job->stages, "smooth");
     return HEWN_OK;
 }
 
@@ -163,12 +147,12 @@ static hewn_result convert(file_job *job, hewn_error *error)
 
 static hewn_result examine(file_job *job, hewn_error *error)
 {
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_check_desc desc = {.skip_self_intersections = job->desc->skip_self_intersections,
                             .progress = job->desc->progress};
     hewn_polygons polygons = hewn_model_polygons(&job->model);
     HEWN_TRY(hewn_check_polygons(&polygons, &desc, &job->report->check, error));
-    end_stage(job, "check");
+    hewn_stage_end(&job->stages, "check");
     return HEWN_OK;
 }
 
@@ -177,14 +161,14 @@ static hewn_result write(file_job *job, hewn_error *error)
     const hewn_file_job_desc *desc = job->desc;
     hewn_file_report *report = job->report;
     char name[256];
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     HEWN_TRY(hewn_losses_find(&job->model, report->to, &report->losses, error));
     if (report->to == HEWN_MESH_STL)
         report->losses.rejoined = report->repair.vertex_copies;
     hewn_path_stem(strcmp(desc->output, "-") == 0 ? desc->input : desc->output, name, sizeof name);
     hewn_write_desc write_desc = {.format = report->to, .name = name, .progress = desc->progress};
     HEWN_TRY(hewn_model_write(&job->model, desc->output, &write_desc, error));
-    end_stage(job, "write");
+    hewn_stage_end(&job->stages, "write");
     return HEWN_OK;
 }
 
@@ -217,10 +201,13 @@ static hewn_result run(file_job *job, hewn_error *error)
 hewn_result hewn_file_convert(const hewn_file_job_desc *desc, hewn_file_report *out, hewn_error *error)
 {
     *out = (hewn_file_report){0};
-    file_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
+    file_job job = {.desc = desc,
+                    .report = out,
+                    .stages = hewn_stages_start(desc->began, out->stages, sizeof out->stages / sizeof *out->stages,
+                                                &out->stage_count)};
     hewn_result result = run(&job, error);
     hewn_model_destroy(&job.model);
-    out->seconds = hewn_clock_now() - job.began;
+    out->seconds = hewn_stages_seconds(&job.stages);
     out->peak_host_bytes = hewn_peak_host_bytes();
     if (result == HEWN_OK && desc->report)
         result = hewn_file_report_write(out, desc->report, error);

@@ -6,21 +6,21 @@
 #include <unistd.h>
 
 #include "base/alloc.h"
-#include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "pipeline/frame.h"
 #include "pipeline/label_paths.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
+#include "pipeline/stages.h"
 
 /* A job under way. */
 typedef struct label_job {
     const hewn_label_job_desc *desc;
     hewn_label_report *report;
-    double began, stage;
+    hewn_stages stages;
     hewn_label_target target;
-    const hewn_unit *to_unit;
-    const hewn_axis *to_up;
+    hewn_frame wanted; /* to write in */
     hewn_label_table names;
     hewn_volume volume;
     hewn_label_mesh mesh;
@@ -30,24 +30,6 @@ typedef struct label_job {
     uint32_t written; /* files of labels */
 } label_job;
 
-static const hewn_axis plus_y = HEWN_AXIS_PLUS_Y, plus_z = HEWN_AXIS_PLUS_Z;
-
-static void begin_stage(label_job *job)
-{
-    job->stage = hewn_clock_now() - job->began;
-}
-
-static void end_stage(label_job *job, const char *name)
-{
-    hewn_label_report *report = job->report;
-    if (report->stage_count == sizeof report->stages / sizeof *report->stages)
-        return;
-    hewn_report_stage *stage = &report->stages[report->stage_count++];
-    snprintf(stage->name, sizeof stage->name, "%s", name);
-    stage->begin = job->stage;
-    stage->end = hewn_clock_now() - job->began;
-}
-
 static hewn_result fail_memory(hewn_error *error)
 {
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the meshes of labels");
@@ -56,34 +38,13 @@ static hewn_result fail_memory(hewn_error *error)
 /* --- before any work -----------------------------------------------------------------------------------------------
  */
 
-static hewn_result choose_frame(label_job *job, hewn_error *error)
-{
-    const hewn_label_job_desc *desc = job->desc;
-    hewn_mesh_format to = job->report->to;
-    const hewn_unit *metre = hewn_unit_find("m");
-    job->to_unit = desc->to_unit;
-    job->to_up = desc->to_up;
-    if (to == HEWN_MESH_GLB && job->to_unit && job->to_unit != metre)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB is always in metres, not in %s", job->to_unit->name);
-    if (to == HEWN_MESH_GLB && job->to_up && *job->to_up != plus_y)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB always has +Y up, not %s", hewn_axis_name(*job->to_up));
-    if (to == HEWN_MESH_3MF && job->to_up && *job->to_up != plus_z)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF always has +Z up, not %s", hewn_axis_name(*job->to_up));
-    if (to == HEWN_MESH_3MF && job->to_unit && strcmp(job->to_unit->name, "km") == 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF cannot be in km");
-    if (to == HEWN_MESH_GLB)
-        job->to_unit = metre;
-    if (to == HEWN_MESH_GLB || to == HEWN_MESH_3MF)
-        job->to_up = to == HEWN_MESH_GLB ? &plus_y : &plus_z;
-    return HEWN_OK;
-}
-
 static hewn_result check(label_job *job, hewn_error *error)
 {
     const hewn_label_job_desc *desc = job->desc;
     hewn_label_report *report = job->report;
     HEWN_TRY(hewn_label_target_find(desc, &job->target, &report->to, error));
-    HEWN_TRY(choose_frame(job, error));
+    HEWN_TRY(
+        hewn_frame_choose(job->report->to, (hewn_frame){job->desc->to_unit, job->desc->to_up}, &job->wanted, error));
     if (desc->report && strcmp(desc->report, desc->output) == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
                          strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
@@ -109,14 +70,14 @@ static hewn_result load(label_job *job, hewn_error *error)
     hewn_label_report *report = job->report;
     hewn_volume_read_desc read = desc->read;
     read.progress = desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     report->from = read.format != HEWN_VOLUME_UNKNOWN ? read.format : hewn_volume_format_of_file(desc->input);
     hewn_result result = hewn_volume_read(desc->input, &read, &job->volume, error);
     if (result != HEWN_OK)
         return result == HEWN_INVALID_ARGUMENT ? result : hewn_blame_input(result, desc->input, error);
     memcpy(report->dims, job->volume.dims, sizeof report->dims);
     report->anatomical = job->volume.anatomical;
-    end_stage(job, "load");
+    hewn_stage_end(&job->stages, "load");
     return HEWN_OK;
 }
 
@@ -129,7 +90,7 @@ static hewn_result mesh(label_job *job, hewn_error *error)
                              .relaxations = desc->relaxations,
                              .keep = desc->keep,
                              .progress = desc->progress};
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_labels_mesh(&job->volume, &label, &job->mesh, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
@@ -142,7 +103,7 @@ static hewn_result mesh(label_job *job, hewn_error *error)
     job->frame.up = HEWN_AXIS_PLUS_Z;
     job->frame.up_known = job->volume.anatomical;
     hewn_volume_destroy(&job->volume);
-    end_stage(job, "label");
+    hewn_stage_end(&job->stages, "label");
     return HEWN_OK;
 }
 
@@ -152,11 +113,11 @@ static hewn_result smooth(label_job *job, hewn_error *error)
         return HEWN_OK;
     hewn_smooth_desc desc = job->desc->smooth->desc;
     desc.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     HEWN_TRY(hewn_label_mesh_smooth(&job->mesh, &desc, &job->report->smooth, error));
     job->report->smoothed = true;
     job->report->smooth_method = desc.method;
-    end_stage(job, "smooth");
+    hewn_stage_end(&job->stages, "smooth");
     return HEWN_OK;
 }
 
@@ -168,22 +129,11 @@ static hewn_result simplify(label_job *job, hewn_error *error)
     desc.labels = NULL;
     desc.frozen = NULL;
     desc.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     HEWN_TRY(hewn_label_mesh_simplify(&job->mesh, &desc, &job->report->simplify, error));
     job->report->simplified = true;
-    end_stage(job, "simplify");
+    hewn_stage_end(&job->stages, "simplify");
     return HEWN_OK;
-}
-
-/* A 3MF file without a unit is in millimetres, and has none for kilometres. */
-static const hewn_unit *unit_for(const label_job *job)
-{
-    if (job->to_unit || job->report->to != HEWN_MESH_3MF)
-        return job->to_unit;
-    const hewn_unit *unit = job->frame.unit;
-    if (!unit)
-        return hewn_unit_find("mm");
-    return strcmp(unit->name, "km") == 0 ? hewn_unit_find("m") : NULL;
 }
 
 /* All positions at once, so that shells go on sharing them. */
@@ -193,7 +143,8 @@ static hewn_result convert(label_job *job, hewn_error *error)
     hewn_model all = job->frame;
     all.positions = job->mesh.positions;
     all.vertex_count = job->mesh.vertex_count;
-    HEWN_TRY(hewn_model_convert(&all, unit_for(job), job->to_up, &report->conversion, error));
+    HEWN_TRY(hewn_model_convert(&all, hewn_frame_unit(report->to, job->wanted, &all), job->wanted.up,
+                                &report->conversion, error));
     job->frame.unit = all.unit;
     job->frame.up = all.up;
     job->frame.up_known = all.up_known;
@@ -319,7 +270,7 @@ static hewn_result prove_all(label_job *job, hewn_error *error)
 {
     enum { BATCH = 64 }; /* after which it is told how far this is */
     uint32_t count = job->report->label_count;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     for (uint32_t from = 0; from < count; from += BATCH) {
         uint32_t to = count - from < BATCH ? count : from + BATCH;
         for (uint32_t n = from; n < to; n++)
@@ -328,7 +279,7 @@ static hewn_result prove_all(label_job *job, hewn_error *error)
         HEWN_TRY(prove_small(job, from, to, error));
         HEWN_TRY(hewn_progress_report(job->desc->progress, "certify", (double)to / count, error));
     }
-    end_stage(job, "certify");
+    hewn_stage_end(&job->stages, "certify");
     return HEWN_OK;
 }
 
@@ -428,14 +379,14 @@ static hewn_result check_together(const label_job *job, hewn_error *error)
 
 static hewn_result write_meshes(label_job *job, hewn_error *error)
 {
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     if (job->target != HEWN_LABELS_TOGETHER)
         HEWN_TRY(write_each(job, error));
     else if (job->report->to == HEWN_MESH_GLB)
         HEWN_TRY(write_glb(job, error));
     else
         HEWN_TRY(write_together(job, error));
-    end_stage(job, "write");
+    hewn_stage_end(&job->stages, "write");
     return HEWN_OK;
 }
 
@@ -471,14 +422,17 @@ static void unwrite(const label_job *job)
 hewn_result hewn_labels_convert(const hewn_label_job_desc *desc, hewn_label_report *out, hewn_error *error)
 {
     *out = (hewn_label_report){0};
-    label_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
+    label_job job = {.desc = desc,
+                     .report = out,
+                     .stages = hewn_stages_start(desc->began, out->stages, sizeof out->stages / sizeof *out->stages,
+                                                 &out->stage_count)};
     hewn_result result = run(&job, error);
     if (result != HEWN_OK)
         unwrite(&job);
     hewn_label_table_destroy(&job.names);
     hewn_volume_destroy(&job.volume);
     hewn_label_mesh_destroy(&job.mesh);
-    out->seconds = hewn_clock_now() - job.began;
+    out->seconds = hewn_stages_seconds(&job.stages);
     out->peak_host_bytes = hewn_peak_host_bytes();
     if (result == HEWN_OK && desc->report)
         result = hewn_label_report_write(out, desc->report, error);

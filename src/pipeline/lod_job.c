@@ -5,12 +5,12 @@
 #include <string.h>
 
 #include "base/alloc.h"
-#include "base/clock.h"
 #include "base/error.h"
 #include "pipeline/frame.h"
 #include "pipeline/losses.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
+#include "pipeline/stages.h"
 
 /* Where the number of a level goes in a file's name. */
 static const char place_of_level[] = "{level}";
@@ -18,26 +18,13 @@ static const char place_of_level[] = "{level}";
 typedef struct lod_job {
     const hewn_lod_job_desc *desc;
     hewn_lod_report *report;
-    double began, stage;
+    hewn_stages stages;
     hewn_frame frame;
     bool separate; /* a file a level */
     hewn_model model;
     hewn_lod_level *levels;
     uint32_t count;
 } lod_job;
-
-static void begin_stage(lod_job *job)
-{
-    job->stage = hewn_clock_now() - job->began;
-}
-
-static void end_stage(lod_job *job, const char *name)
-{
-    hewn_report_stage *stage = &job->report->stages[job->report->stage_count++];
-    snprintf(stage->name, sizeof stage->name, "%s", name);
-    stage->begin = job->stage;
-    stage->end = hewn_clock_now() - job->began;
-}
 
 /* --- before any work ---------------------------------------------------------------------------------------------- */
 
@@ -113,7 +100,7 @@ static hewn_result load(lod_job *job, hewn_error *error)
 {
     const hewn_lod_job_desc *desc = job->desc;
     hewn_read_desc read = {.format = job->report->from, .progress = desc->progress};
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_model_read(desc->input, &read, &job->model, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
@@ -127,7 +114,7 @@ static hewn_result load(lod_job *job, hewn_error *error)
     job->report->faces_before = job->model.face_count;
     job->report->triangles_before = count_triangles(&job->model);
     job->report->diagonal = find_diagonal(&job->model);
-    end_stage(job, "load");
+    hewn_stage_end(&job->stages, "load");
     return HEWN_OK;
 }
 
@@ -137,12 +124,12 @@ static hewn_result simplify(lod_job *job, hewn_error *error)
     desc.simplify.labels = NULL;
     desc.simplify.frozen = NULL;
     desc.simplify.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_lod_levels_make(&job->model, &desc, &job->levels, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, job->desc->input, error);
     job->count = desc.count;
-    end_stage(job, "simplify");
+    hewn_stage_end(&job->stages, "simplify");
     return HEWN_OK;
 }
 
@@ -225,7 +212,7 @@ static hewn_result write_apart(lod_job *job, hewn_write_desc *desc, hewn_error *
 static hewn_result write(lod_job *job, hewn_error *error)
 {
     char name[256];
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     job->report->levels = hewn_alloc_zero(job->count, sizeof *job->report->levels);
     if (!job->report->levels)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the report");
@@ -236,7 +223,7 @@ static hewn_result write(lod_job *job, hewn_error *error)
     hewn_path_stem(job->desc->output, name, sizeof name);
     hewn_write_desc desc = {.format = job->report->to, .name = name, .progress = job->desc->progress};
     HEWN_TRY(job->separate ? write_apart(job, &desc, error) : write_together(job, &desc, error));
-    end_stage(job, "write");
+    hewn_stage_end(&job->stages, "write");
     return HEWN_OK;
 }
 
@@ -257,11 +244,14 @@ static hewn_result run(lod_job *job, hewn_error *error)
 hewn_result hewn_lod_file(const hewn_lod_job_desc *desc, hewn_lod_report *out, hewn_error *error)
 {
     *out = (hewn_lod_report){0};
-    lod_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
+    lod_job job = {.desc = desc,
+                   .report = out,
+                   .stages = hewn_stages_start(desc->began, out->stages, sizeof out->stages / sizeof *out->stages,
+                                               &out->stage_count)};
     hewn_result result = run(&job, error);
     hewn_model_destroy(&job.model);
     hewn_lod_levels_destroy(&job.levels, job.count);
-    out->seconds = hewn_clock_now() - job.began;
+    out->seconds = hewn_stages_seconds(&job.stages);
     out->peak_host_bytes = hewn_peak_host_bytes();
     if (result == HEWN_OK && desc->report)
         result = hewn_lod_report_write(out, desc->report, error);

@@ -59,10 +59,11 @@ hewn_result hewn_input_format(const char *path, hewn_mesh_format format, hewn_me
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
                          "standard input has no extension: name its format with --from glb, obj, ply, stl or off");
     if (*out == HEWN_MESH_UNKNOWN)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "the name '%s' ends in no mesh format that Hewn reads: .glb, .gltf, .obj, .ply, .stl, .off, .hpm, "
-                         "also with .gz; --from names one",
-                         path);
+        return hewn_fail(
+            error, HEWN_INVALID_ARGUMENT,
+            "the name '%s' ends in no mesh format that Hewn reads: .glb, .gltf, .obj, .ply, .stl, .off, .hpm, "
+            "also with .gz; --from names one",
+            path);
     if (*out == HEWN_MESH_3MF)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF can be written, but not read");
     return HEWN_OK;

@@ -4,34 +4,21 @@
 #include <string.h>
 
 #include "base/alloc.h"
-#include "base/clock.h"
 #include "base/error.h"
 #include "pipeline/frame.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
+#include "pipeline/stages.h"
 
 typedef struct progressive_job {
     const hewn_progressive_job_desc *desc;
     hewn_progressive_report *report;
-    double began, stage;
+    hewn_stages stages;
     hewn_frame frame;
     bool make; /* a progressive mesh; else one is taken from it */
     hewn_model model;
     hewn_progressive *progressive;
 } progressive_job;
-
-static void begin_stage(progressive_job *job)
-{
-    job->stage = hewn_clock_now() - job->began;
-}
-
-static void end_stage(progressive_job *job, const char *name)
-{
-    hewn_report_stage *stage = &job->report->stages[job->report->stage_count++];
-    snprintf(stage->name, sizeof stage->name, "%s", name);
-    stage->begin = job->stage;
-    stage->end = hewn_clock_now() - job->began;
-}
 
 /* --- before any work ---------------------------------------------------------------------------------------------- */
 
@@ -95,21 +82,21 @@ static hewn_result make(progressive_job *job, hewn_error *error)
     const hewn_progressive_job_desc *desc = job->desc;
     const hewn_read_desc read = {.format = job->report->from, .progress = desc->progress};
     const hewn_progressive_desc how = {.faces = desc->faces, .measure = true, .progress = desc->progress};
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_model_read(desc->input, &read, &job->model, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
     set_frame(job);
     HEWN_TRY(convert(job, error));
-    end_stage(job, "load");
-    begin_stage(job);
+    hewn_stage_end(&job->stages, "load");
+    hewn_stage_begin(&job->stages);
     result = hewn_progressive_make(&job->model, &how, &job->progressive, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
-    end_stage(job, "simplify");
-    begin_stage(job);
+    hewn_stage_end(&job->stages, "simplify");
+    hewn_stage_begin(&job->stages);
     HEWN_TRY(hewn_progressive_write(job->progressive, desc->output, error));
-    end_stage(job, "write");
+    hewn_stage_end(&job->stages, "write");
     job->report->vertices = job->model.vertex_count;
     job->report->triangles = hewn_progressive_about(job->progressive).triangles;
     return HEWN_OK;
@@ -127,21 +114,21 @@ static uint64_t choose_splits(const progressive_job *job)
 static hewn_result write_mesh(progressive_job *job, hewn_error *error)
 {
     char name[256];
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     job->report->vertices = job->model.vertex_count;
     job->report->triangles = hewn_progressive_triangles_at(job->progressive, job->report->splits);
     HEWN_TRY(convert(job, error));
     hewn_path_stem(strcmp(job->desc->output, "-") == 0 ? job->desc->input : job->desc->output, name, sizeof name);
     const hewn_write_desc desc = {.format = job->report->to, .name = name, .progress = job->desc->progress};
     HEWN_TRY(hewn_model_write(&job->model, job->desc->output, &desc, error));
-    end_stage(job, "write");
+    hewn_stage_end(&job->stages, "write");
     return HEWN_OK;
 }
 
 static hewn_result take(progressive_job *job, hewn_error *error)
 {
     const hewn_progressive_job_desc *desc = job->desc;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result = hewn_progressive_read(desc->input, desc->partial, desc->progress, &job->progressive, error);
     if (result == HEWN_OK) {
         job->report->splits = choose_splits(job);
@@ -150,7 +137,7 @@ static hewn_result take(progressive_job *job, hewn_error *error)
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
     set_frame(job);
-    end_stage(job, "load");
+    hewn_stage_end(&job->stages, "load");
     return write_mesh(job, error);
 }
 
@@ -184,11 +171,14 @@ hewn_result hewn_progressive_file(const hewn_progressive_job_desc *desc, hewn_pr
                                   hewn_error *error)
 {
     *out = (hewn_progressive_report){0};
-    progressive_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
+    progressive_job job = {.desc = desc,
+                           .report = out,
+                           .stages = hewn_stages_start(desc->began, out->stages,
+                                                       sizeof out->stages / sizeof *out->stages, &out->stage_count)};
     hewn_result result = run(&job, error);
     hewn_model_destroy(&job.model);
     hewn_progressive_destroy(&job.progressive);
-    out->seconds = hewn_clock_now() - job.began;
+    out->seconds = hewn_stages_seconds(&job.stages);
     out->peak_host_bytes = hewn_peak_host_bytes();
     if (result == HEWN_OK && desc->report)
         result = hewn_progressive_report_write(out, desc->report, error);

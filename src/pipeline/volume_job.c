@@ -6,40 +6,24 @@
 #include <string.h>
 
 #include "base/alloc.h"
-#include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "geom/distinct.h"
 #include "pipeline/mesh_parts.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
+#include "pipeline/stages.h"
 
 /* A job under way. */
 typedef struct volume_job {
     const hewn_volume_job_desc *desc;
     hewn_volume_report *report;
-    double began, stage;
+    hewn_stages stages;
     hewn_volume volume;
     uint64_t frame; /* of `volume`: what is asked for, or 0 where only that one is left */
     hewn_triangles mesh;
     hewn_mesh_parts parts; /* where there is a limit of memory: `mesh` is a view of them */
 } volume_job;
-
-static void begin_stage(volume_job *job)
-{
-    job->stage = hewn_clock_now() - job->began;
-}
-
-static void end_stage(volume_job *job, const char *name)
-{
-    hewn_volume_report *report = job->report;
-    if (report->stage_count == sizeof report->stages / sizeof *report->stages)
-        return;
-    hewn_report_stage *stage = &report->stages[report->stage_count++];
-    snprintf(stage->name, sizeof stage->name, "%s", name);
-    stage->begin = job->stage;
-    stage->end = hewn_clock_now() - job->began;
-}
 
 /* --- before any work ---------------------------------------------------------------------------------------------- */
 
@@ -120,7 +104,7 @@ static hewn_result load(volume_job *job, hewn_error *error)
     hewn_volume_report *report = job->report;
     hewn_volume_read_desc read = desc->read;
     read.progress = desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     report->from = read.format != HEWN_VOLUME_UNKNOWN ? read.format : hewn_volume_format_of_file(desc->input);
     HEWN_TRY(read_within(job, &read, error));
     const hewn_volume *volume = &job->volume;
@@ -136,7 +120,7 @@ static hewn_result load(volume_job *job, hewn_error *error)
     report->anatomical = volume->anatomical;
     report->left_handed = hewn_volume_determinant(volume) < 0;
     report->remark = volume->remark ? hewn_strdup(volume->remark) : NULL;
-    end_stage(job, "load");
+    hewn_stage_end(&job->stages, "load");
     return HEWN_OK;
 }
 
@@ -149,13 +133,13 @@ static hewn_result filter(volume_job *job, hewn_error *error)
     hewn_volume smooth;
     desc.frame = job->frame;
     desc.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     HEWN_TRY(hewn_volume_smooth(&job->volume, &desc, &smooth, error));
     hewn_volume_destroy(&job->volume);
     job->volume = smooth;
     job->frame = 0;
     job->report->filter = desc;
-    end_stage(job, "filter");
+    hewn_stage_end(&job->stages, "filter");
     return HEWN_OK;
 }
 
@@ -204,9 +188,9 @@ static hewn_result choose_iso(volume_job *job, hewn_error *error)
     report->iso_value = report->iso.number;
     if (report->iso.kind == HEWN_ISO_NUMBER)
         return HEWN_OK;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     HEWN_TRY(hewn_iso_find(&report->iso, &job->volume, job->frame, &report->iso_value, error));
-    end_stage(job, "iso");
+    hewn_stage_end(&job->stages, "iso");
     return HEWN_OK;
 }
 
@@ -216,7 +200,7 @@ static hewn_result measure(volume_job *job, hewn_error *error)
     const hewn_volume *volume = &job->volume;
     if (report->measured)
         return HEWN_OK;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     report->range = hewn_volume_find_range(volume, job->frame);
     report->measured = true;
     if (report->range.finite_count > 0 && report->range.sample_lo < report->range.sample_hi) {
@@ -227,7 +211,7 @@ static hewn_result measure(volume_job *job, hewn_error *error)
             report->bins[volume->slope < 0 ? HEWN_VOLUME_REPORT_BINS - 1 - i : i] = histogram.bins[i];
         hewn_volume_histogram_destroy(&histogram);
     }
-    end_stage(job, "measure");
+    hewn_stage_end(&job->stages, "measure");
     return HEWN_OK;
 }
 
@@ -282,7 +266,7 @@ static hewn_result extract(volume_job *job, hewn_error *error)
                                        .keep = desc->keep ? &keep : NULL,
                                        .max_memory = desc->max_memory,
                                        .progress = desc->progress};
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_result result;
     if (desc->max_memory > 0)
         result = hewn_mesh_parts_of_volume(&job->parts, &job->volume, &wanted, desc->output, &report->extraction,
@@ -295,7 +279,7 @@ static hewn_result extract(volume_job *job, hewn_error *error)
     if (result == HEWN_BAD_INPUT && report->extraction.active_cells == 0 && report->extraction.stage_count > 0)
         return explain_nothing(job, error);
     HEWN_TRY(result);
-    end_stage(job, "extract");
+    hewn_stage_end(&job->stages, "extract");
     if (desc->max_memory > 0)
         job->mesh = job->parts.triangles;
     /* A head that touches the border has a cap too, but not mostly. */
@@ -313,11 +297,11 @@ static hewn_result smooth(volume_job *job, double scale, hewn_error *error)
     desc.labels = NULL;
     desc.freedom = NULL;
     desc.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     HEWN_TRY(hewn_triangles_smooth(&job->mesh, &desc, &report->smooth, error));
     report->smoothed = true;
     report->smooth_method = desc.method;
-    end_stage(job, "smooth");
+    hewn_stage_end(&job->stages, "smooth");
     return HEWN_OK;
 }
 
@@ -329,10 +313,10 @@ static hewn_result simplify(volume_job *job, double scale, hewn_error *error)
     desc.labels = NULL;
     desc.frozen = NULL;
     desc.progress = job->desc->progress;
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     HEWN_TRY(hewn_triangles_simplify(&job->mesh, &desc, &report->simplify, error));
     report->simplified = true;
-    end_stage(job, "simplify");
+    hewn_stage_end(&job->stages, "simplify");
     return HEWN_OK;
 }
 
@@ -358,9 +342,9 @@ static hewn_result certify(volume_job *job, hewn_error *error)
 {
     hewn_certificate *certificate = &job->report->certificate;
     if (job->desc->max_memory == 0) { /* else it was certified as it came */
-        begin_stage(job);
+        hewn_stage_begin(&job->stages);
         HEWN_TRY(hewn_certify(&job->mesh, job->desc->progress, certificate, error));
-        end_stage(job, "certify");
+        hewn_stage_end(&job->stages, "certify");
     }
     certificate->max_residual = 0.0 / 0.0; /* samples are all that is known of the field */
     if (certificate->manifold && certificate->oriented && (certificate->closed || job->desc->open))
@@ -379,7 +363,7 @@ static hewn_result write(volume_job *job, hewn_error *error)
     bool patient = report->space == HEWN_SPACE_RAS || report->space == HEWN_SPACE_LPS;
     bool known = patient || report->space == HEWN_SPACE_GLTF;
     char name[256];
-    begin_stage(job);
+    hewn_stage_begin(&job->stages);
     hewn_path_stem(strcmp(desc->output, "-") == 0 ? desc->input : desc->output, name, sizeof name);
     hewn_write_desc write_desc = {.format = report->to,
                                   .name = name,
@@ -393,7 +377,7 @@ static hewn_result write(volume_job *job, hewn_error *error)
     if (desc->max_memory > 0)
         write_desc.progress = hewn_mesh_parts_progress(&job->parts, desc->progress);
     HEWN_TRY(hewn_triangles_write(&job->mesh, desc->output, &write_desc, error));
-    end_stage(job, "write");
+    hewn_stage_end(&job->stages, "write");
     return HEWN_OK;
 }
 
@@ -434,14 +418,17 @@ static hewn_result run(volume_job *job, hewn_error *error)
 hewn_result hewn_volume_convert(const hewn_volume_job_desc *desc, hewn_volume_report *out, hewn_error *error)
 {
     *out = (hewn_volume_report){0};
-    volume_job job = {.desc = desc, .report = out, .began = desc->began > 0 ? desc->began : hewn_clock_now()};
+    volume_job job = {.desc = desc,
+                      .report = out,
+                      .stages = hewn_stages_start(desc->began, out->stages, sizeof out->stages / sizeof *out->stages,
+                                                  &out->stage_count)};
     hewn_result result = run(&job, error);
     if (desc->max_memory > 0)
         job.mesh = (hewn_triangles){0};
     hewn_triangles_destroy(&job.mesh);
     hewn_mesh_parts_clear(&job.parts);
     hewn_volume_destroy(&job.volume);
-    out->seconds = hewn_clock_now() - job.began;
+    out->seconds = hewn_stages_seconds(&job.stages);
     out->peak_host_bytes = hewn_peak_host_bytes();
     if (result == HEWN_OK && desc->report)
         result = hewn_volume_report_write(out, desc->report, error);
