@@ -18,9 +18,8 @@ typedef struct hewn_channel {
     hewn_attribute_info info; /* its name is the model's */
     void *values;
     char **names;
-    uint32_t name_count;
     uint32_t *slots; /* hewn_channel_value()'s table of names; NULL where it was not called */
-    uint32_t slot_count;
+    uint32_t name_count, slot_count;
 } hewn_channel;
 
 /* Zero is the empty model. Everything is owned by it, from the heap; move it by assignment and leave it with

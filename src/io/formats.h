@@ -67,7 +67,7 @@ extern const hewn_format_writer hewn_glb_writer, hewn_obj_writer, hewn_ply_write
     hewn_3mf_writer;
 
 /* A model's job, without triangles cut of polygons and without a name. */
-hewn_writing hewn_writing_of(const hewn_model *model, const hewn_write_desc *desc);
+hewn_writing hewn_writing_of(const hewn_model *model, const hewn_write_desc *wanted);
 
 /* The name given, or the file's without folder and extension, with control characters blanked: names stand in lines.
  * The caller's (hewn_free); NULL when out of memory. */

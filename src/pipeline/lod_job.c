@@ -195,16 +195,17 @@ static hewn_result write_together(lod_job *job, const hewn_write_desc *desc, hew
     return result;
 }
 
-static hewn_result write_apart(lod_job *job, hewn_write_desc *desc, hewn_error *error)
+static hewn_result write_apart(lod_job *job, const hewn_write_desc *desc, hewn_error *error)
 {
-    char name[256];
     for (uint32_t i = 0; i < job->count; i++) {
         char *path = job->report->levels[i].output = level_path(job->desc->output, i);
         if (!path)
             return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a file's name");
+        char name[256];
+        hewn_write_desc level = *desc;
         hewn_path_stem(path, name, sizeof name);
-        desc->name = name;
-        HEWN_TRY(hewn_model_write(&job->levels[i].model, path, desc, error));
+        level.name = name;
+        HEWN_TRY(hewn_model_write(&job->levels[i].model, path, &level, error));
     }
     return HEWN_OK;
 }

@@ -103,8 +103,12 @@ static void test_scenes(void **state)
     (void)state;
     char *folder = run_folder_create();
     const char *scene = run_project_file("assets/scenes/csg.lua");
-    char *report = report_of(folder, (run_desc){.arguments = {"mesh", scene, "-o", "b.ply", "--res", "24", "--smooth",
-                                                              "laplacian:iterations=3,volume=keep"}});
+    run_desc desc = {.arguments = {"mesh", scene, "-o", "b.ply", "--res", "24", "--smooth",
+                                   "laplacian:iterations=3,volume=keep", "--report", "report.json"},
+                     .folder = folder};
+    run_result done = run_expecting(0, &desc);
+    run_result_destroy(&done);
+    char *report = read_text(folder, "report.json");
     assert_string_equal(json_string(report, "smooth.method"), "laplacian");
     assert_true(json_number(report, "smooth.iterations") == 3);
     double volume = json_number(report, "smooth.volume_before");
