@@ -7,12 +7,14 @@
 #include "field/operate.h"
 #include "lanes/internal.h"
 #include "lanes/loops.h"
+#include "lanes/outline.h"
 
 /* What one step reads and writes; `unsure` gathers NaN where a bound is not finite. */
 typedef struct rows {
     const float *alo, *ahi, *blo, *bhi;
     float *lo, *hi, *unsure;
     int32_t *choice;
+    float *places; /* of outlines */
 } rows;
 
 static inline float least(float a, float b)
@@ -61,6 +63,19 @@ static void other(const hewn_lane_tape *tape, const hewn_lane_step *step, const 
         if (sure && node->op == HEWN_OP_EDGE) /* no bound: the value in the middle, on both sides */
             r->lo[i] = r->hi[i] = (float)bound.lo;
     }
+}
+
+/* Keeps the places that the outline is asked at, for what it is cut down to. */
+static void outline(const hewn_lane_outline *sides, rows *r, uint32_t count)
+{
+    const float *const x[2] = {r->alo, r->ahi}, *const y[2] = {r->blo, r->bhi};
+    for (int i = 0; i < 2; i++) {
+        memcpy(r->places + (size_t)i * HEWN_LANES, x[i], count * sizeof(float));
+        memcpy(r->places + (size_t)(2 + i) * HEWN_LANES, y[i], count * sizeof(float));
+    }
+    hewn_lane_outline_bound(sides, x, y, r->lo, r->hi, count);
+    for (uint32_t i = 0; i < count; i++)
+        r->unsure[i] += (r->hi[i] - r->lo[i]) * 0.0F;
 }
 
 /* A blend that is not known here: of compact support it is the lesser operand where the two are `size` apart, as
@@ -170,6 +185,7 @@ HEWN_LANE_CLONES static void run_step(const hewn_lane_tape *tape, const hewn_lan
     case HEWN_LANE_BLEND:
         choose_blend(tape, step, r, count);
         EACH(blend(alo[i], blo[i], n, step->inverse, -1), blend(ahi[i], bhi[i], n, step->inverse, 1));
+    case HEWN_LANE_OUTLINE: outline(&tape->outlines[step->node], r, count); break;
     default: run_other(tape, step, values, r, count);
     }
 }
@@ -180,7 +196,7 @@ void hewn_lanes_bound(const hewn_lane_tape *tape, hewn_lane_work *work, const he
     float unsure[HEWN_LANES] = {0};
     enum { ROW = 2 * HEWN_LANES };
     float *values = work->values;
-    rows r = {.unsure = unsure, .choice = work->choices};
+    rows r = {.unsure = unsure, .choice = work->choices, .places = work->places};
     for (uint32_t at = 0; at < tape->count; at++) {
         const hewn_lane_step *step = &tape->steps[at];
         r.alo = values + (size_t)step->from[0] * ROW;
@@ -192,6 +208,8 @@ void hewn_lanes_bound(const hewn_lane_tape *tape, hewn_lane_work *work, const he
         run_step(tape, step, values, boxes, &r, count);
         if (hewn_lane_can_cut(step))
             r.choice += HEWN_LANES;
+        if (step->kind == HEWN_LANE_OUTLINE)
+            r.places += 4 * HEWN_LANES;
     }
     const float *last = values + (size_t)tape->steps[tape->count - 1].out * ROW;
     for (uint32_t i = 0; i < count; i++) {

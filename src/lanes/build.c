@@ -6,12 +6,14 @@
 #include "base/error.h"
 #include "field/sampling.h"
 #include "lanes/internal.h"
+#include "lanes/outline.h"
 
 enum { MOST_STEPS_A_NODE = 24 };
 
 typedef struct builder {
-    hewn_lane_tape *tape; /* places only, no registers yet */
+    hewn_lane_tape *tape; /* places only, no registers yet; outlines have their own arrays */
     uint32_t other_count;
+    size_t outline_room;
 } builder;
 
 /* As the shaders have numbers. */
@@ -198,21 +200,50 @@ static uint32_t add_node(builder *b, const hewn_node_data *node, const uint32_t 
     }
 }
 
-static uint32_t fill(builder *b, const hewn_field *field, const uint32_t *ids, size_t count, uint32_t *places)
+/* An outline is one step in place of its links; `*place` stays none where it is not to be read. */
+static hewn_result add_outline(builder *b, const hewn_field *field, const hewn_node_data *node, const uint32_t *in,
+                               uint32_t *place, hewn_error *error)
 {
-    uint32_t last = HEWN_NO_STEP;
+    hewn_lane_tape *tape = b->tape;
+    hewn_lane_outline read;
+    *place = HEWN_NO_STEP;
+    HEWN_TRY(hewn_reserve((void **)&tape->outlines, &b->outline_room, (size_t)tape->outline_count + 1,
+                          sizeof *tape->outlines, error));
+    HEWN_TRY(hewn_lane_outline_read(field, node, &read, error));
+    if (!read.sides)
+        return HEWN_OK;
+    *place = two(b, HEWN_LANE_OUTLINE, in[1], in[2]);
+    tape->steps[*place].node = tape->outline_count;
+    tape->outlines[tape->outline_count++] = read;
+    return HEWN_OK;
+}
+
+static hewn_result fill(builder *b, const hewn_field *field, const uint32_t *ids, size_t count, uint32_t *places,
+                        hewn_error *error)
+{
     for (size_t i = 0; i < count; i++) {
         const hewn_node_data *node = hewn_field_node(field, ids[i]);
-        uint32_t in[HEWN_MAX_OPERANDS] = {HEWN_NO_STEP, HEWN_NO_STEP, HEWN_NO_STEP};
-        if (node->op == HEWN_OP_PAINT) {
-            last = places[ids[i]] = places[node->operand[0]];
-            continue;
-        }
+        uint32_t in[HEWN_MAX_OPERANDS] = {HEWN_NO_STEP, HEWN_NO_STEP, HEWN_NO_STEP}, *place = &places[ids[i]];
         for (int k = 0; k < hewn_op_infos[node->op].operands; k++)
             in[k] = places[node->operand[k]];
-        last = places[ids[i]] = add_node(b, node, in);
+        *place = HEWN_NO_STEP;
+        if (node->op == HEWN_OP_PAINT)
+            *place = in[0];
+        else if (node->op == HEWN_OP_OUTLINE)
+            HEWN_TRY(add_outline(b, field, node, in, place, error));
+        if (*place == HEWN_NO_STEP)
+            *place = add_node(b, node, in);
     }
-    return last;
+    return HEWN_OK;
+}
+
+static void free_builder(builder *b)
+{
+    for (uint32_t i = 0; b->tape && i < b->tape->outline_count; i++)
+        hewn_lane_outline_free(&b->tape->outlines[i]);
+    if (b->tape)
+        hewn_free(b->tape->outlines);
+    hewn_free(b->tape);
 }
 
 static void free_others(hewn_node_data *others, uint32_t count)
@@ -236,8 +267,9 @@ hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_
     hewn_result result = HEWN_OK;
     if (b.tape && others && places) {
         *b.tape = (hewn_lane_tape){.others = others};
-        uint32_t last = fill(&b, field, ids, count, places);
-        result = hewn_lane_tape_settle(b.tape, last, out, error);
+        result = fill(&b, field, ids, count, places, error);
+        if (result == HEWN_OK)
+            result = hewn_lane_tape_settle(b.tape, places[root.id], out, error);
     } else {
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
     }
@@ -249,7 +281,7 @@ hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_
     }
     hewn_free(places);
     hewn_free(ids);
-    hewn_free(b.tape);
+    free_builder(&b);
     return result;
 }
 
@@ -257,6 +289,8 @@ void hewn_lane_tape_destroy(hewn_lane_tape **tape)
 {
     if (*tape && (*tape)->owns)
         free_others((*tape)->others, (*tape)->other_count);
+    if (*tape)
+        hewn_free((*tape)->outlines);
     hewn_free(*tape);
     *tape = NULL;
 }
@@ -271,8 +305,11 @@ hewn_result hewn_lane_work_create(const hewn_lane_tape *whole, hewn_lane_work *o
         (hewn_lane_work){.values = hewn_alloc((size_t)(whole->registers + 1) * ROWS * HEWN_LANES, sizeof *out->values),
                          .choices = hewn_alloc((size_t)(whole->cuts + 1) * HEWN_LANES, sizeof *out->choices),
                          .scratch = hewn_alloc((size_t)whole->count * 3, sizeof *out->scratch),
-                         .held = hewn_alloc((size_t)whole->registers + 1, sizeof *out->held)};
-    if (out->values && out->choices && out->scratch && out->held)
+                         .held = hewn_alloc((size_t)whole->registers + 1, sizeof *out->held),
+                         .places = hewn_alloc((size_t)whole->outline_count * 4 * HEWN_LANES, sizeof *out->places),
+                         .distances = hewn_alloc(whole->side_count, sizeof *out->distances),
+                         .picked = hewn_lane_outlines_room(whole)};
+    if (out->values && out->choices && out->scratch && out->held && out->places && out->distances && out->picked)
         return HEWN_OK;
     hewn_lane_work_destroy(out);
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory evaluating a field");
@@ -284,5 +321,8 @@ void hewn_lane_work_destroy(hewn_lane_work *work)
     hewn_free(work->choices);
     hewn_free(work->scratch);
     hewn_free(work->held);
+    hewn_free(work->places);
+    hewn_free(work->distances);
+    hewn_free(work->picked);
     *work = (hewn_lane_work){0};
 }

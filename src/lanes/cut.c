@@ -3,12 +3,14 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "lanes/internal.h"
+#include "lanes/outline.h"
 
 enum { NO_REGISTER = 0xFFFF };
 
 typedef struct cutting {
     const hewn_lane_tape *from;
     const int32_t *choices; /* the box's column, or NULL */
+    hewn_lane_outline *outlines; /* what those that are needed become; they move together, as steps do */
     uint32_t *same;         /* the step that has a step's value */
     uint32_t *place;        /* in the new tape, HEWN_NO_STEP: not needed */
     uint32_t *held;         /* register */
@@ -55,6 +57,13 @@ static uint32_t copy_steps(cutting *cut, uint32_t last, hewn_lane_tape *to)
         cut->place[i] = to->count;
         hewn_lane_step *step = &to->steps[to->count++];
         *step = cut->from->steps[i];
+        if (step->kind == HEWN_LANE_OUTLINE) {
+            hewn_lane_outline *place = &cut->outlines[to->outline_count], other = *place;
+            *place = cut->outlines[step->node];
+            cut->outlines[step->node] = other;
+            to->side_count += place->side_count;
+            step->node = to->outline_count++;
+        }
         if (cut->held[i] == HEWN_NO_STEP) {
             step->kind = HEWN_LANE_NUMBER;
             step->input_count = 0;
@@ -101,12 +110,15 @@ static hewn_result make(cutting *cut, uint32_t last, uint32_t needed, hewn_lane_
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
     *to = (hewn_lane_tape){.others = cut->from->others};
     to->cuts = copy_steps(cut, last, to);
-    if (!give_registers(cut, to)) {
-        hewn_free(to);
-        return hewn_fail(error, HEWN_LIMIT, "the field keeps more than 65,534 values at a time");
-    }
+    hewn_result result = HEWN_OK;
+    if (to->outline_count > 0 && !(to->outlines = hewn_lane_outlines_pack(cut->outlines, to->outline_count)))
+        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
+    else if (!give_registers(cut, to))
+        result = hewn_fail(error, HEWN_LIMIT, "the field keeps more than 65,534 values at a time");
+    if (result != HEWN_OK)
+        hewn_lane_tape_destroy(&to);
     *out = to;
-    return HEWN_OK;
+    return result;
 }
 
 hewn_result hewn_lane_tape_settle(const hewn_lane_tape *steps, uint32_t last, hewn_lane_tape **out, hewn_error *error)
@@ -116,7 +128,7 @@ hewn_result hewn_lane_tape_settle(const hewn_lane_tape *steps, uint32_t last, he
     uint16_t *free = hewn_alloc((size_t)steps->count + 1, sizeof *free);
     hewn_result result = HEWN_OUT_OF_MEMORY;
     if (room && free) {
-        cutting cut = {.from = steps, .same = room, .free = free};
+        cutting cut = {.from = steps, .same = room, .free = free, .outlines = steps->outlines};
         cut.place = room + steps->count;
         cut.held = room + 2 * (size_t)steps->count;
         uint32_t needed = mark(&cut, last);
@@ -129,6 +141,30 @@ hewn_result hewn_lane_tape_settle(const hewn_lane_tape *steps, uint32_t last, he
     return result;
 }
 
+/* Cuts down the outlines that are needed; returns how many sides they have left. */
+static uint32_t pick(const cutting *cut, hewn_lane_work *work, uint32_t lane)
+{
+    const hewn_lane_tape *tape = cut->from;
+    uint32_t sides = 0;
+    hewn_lane_side *side = work->picked[0].sides;
+    double *turns = work->picked[0].turns;
+    for (uint32_t i = 0; tape->outline_count > 0 && i < tape->count; i++) {
+        uint32_t number = tape->steps[i].node;
+        if (tape->steps[i].kind != HEWN_LANE_OUTLINE || cut->place[i] == HEWN_NO_STEP)
+            continue;
+        const float *place = work->places + (size_t)number * 4 * HEWN_LANES + lane;
+        const float lo[2] = {place[0], place[2 * HEWN_LANES]}, hi[2] = {place[HEWN_LANES], place[3 * HEWN_LANES]};
+        hewn_lane_outline *out = &work->picked[number];
+        out->sides = side;
+        out->turns = turns;
+        hewn_lane_outline_pick(&tape->outlines[number], lo, hi, work->distances, out);
+        sides += out->side_count;
+        side += out->side_count;
+        turns += out->turn_count;
+    }
+    return sides;
+}
+
 hewn_result hewn_lane_tape_cut(const hewn_lane_tape *tape, hewn_lane_work *work, uint32_t lane, hewn_lane_tape **out,
                                hewn_error *error)
 {
@@ -137,7 +173,9 @@ hewn_result hewn_lane_tape_cut(const hewn_lane_tape *tape, hewn_lane_work *work,
     cut.place = work->scratch + tape->count;
     cut.held = work->scratch + 2 * (size_t)tape->count;
     uint32_t needed = mark(&cut, tape->count - 1);
-    if (needed > tape->count - tape->count / 8)
+    uint32_t sides = pick(&cut, work, lane);
+    if (needed > tape->count - tape->count / 8 && sides >= tape->side_count - tape->side_count / 8)
         return HEWN_OK;
+    cut.outlines = work->picked;
     return make(&cut, tape->count - 1, needed, out, error);
 }

@@ -4,6 +4,7 @@
 
 #include "field/operate.h"
 #include "lanes/internal.h"
+#include "lanes/outline.h"
 
 enum { ROW = 4 * HEWN_LANES };
 
@@ -68,6 +69,12 @@ static dual other(const hewn_node_data *node, const dual *in, uint32_t count)
     return out;
 }
 
+static dual outline(const hewn_lane_outline *sides, dual x, dual y)
+{
+    float away[2], v = hewn_lane_outline_gradient(sides, x.v, y.v, away);
+    return chain(v, away[0], x, away[1], y);
+}
+
 static dual run_step(const hewn_lane_tape *tape, const hewn_lane_step *step, const dual *in)
 {
     dual a = in[0], b = in[1], none = flat(0);
@@ -89,6 +96,7 @@ static dual run_step(const hewn_lane_tape *tape, const hewn_lane_step *step, con
     case HEWN_LANE_MIN: return least(a, b);
     case HEWN_LANE_MAX: return greatest(a, b);
     case HEWN_LANE_BLEND: return blend(step, a, b);
+    case HEWN_LANE_OUTLINE: return outline(&tape->outlines[step->node], a, b);
     default: return other(&tape->others[step->node], in, step->input_count);
     }
 }

@@ -81,7 +81,7 @@ static void paint_leaf(painter *p, const hewn_lane_tape *tape, const tile *at)
             else
                 p->on->values[place] = value;
         }
-    p->stats.value_steps += (uint64_t)tape->count * (x1 - at->x) * (y1 - at->y);
+    p->stats.value_steps += (uint64_t)hewn_lane_tape_length(tape) * (x1 - at->x) * (y1 - at->y);
 }
 
 static uint32_t divide(const hewn_lane_image_desc *desc, const tile *at, tile out[MOST_PARTS])
@@ -119,7 +119,7 @@ static hewn_result paint_parts(painter *p, const hewn_lane_tape *tape, tile *par
         return HEWN_OK;
     uint32_t left = 0, lanes = box_tiles(p->on->desc, parts, count, &boxes);
     hewn_lanes_bound(tape, &p->work, &boxes, lanes, lo, hi);
-    p->stats.bound_steps += (uint64_t)tape->count * count;
+    p->stats.bound_steps += (uint64_t)hewn_lane_tape_length(tape) * count;
     hewn_result result = HEWN_OK;
     for (uint32_t i = 0; i < count && result == HEWN_OK; i++) {
         if (p->on->inside && (lo[i] >= 0 || hi[i] < 0)) {
@@ -220,13 +220,13 @@ static hewn_result paint_all(const painting *on, const hewn_lane_tape *whole, he
 hewn_result hewn_lanes_inside(const hewn_lane_tape *whole, const hewn_lane_image_desc *desc, uint8_t *inside,
                               hewn_lane_image_stats *stats, hewn_error *error)
 {
-    *stats = (hewn_lane_image_stats){.whole_steps = whole->count};
+    *stats = (hewn_lane_image_stats){.whole_steps = hewn_lane_tape_length(whole)};
     return paint_all(&(painting){.desc = desc, .inside = inside}, whole, stats, error);
 }
 
 hewn_result hewn_lanes_values(const hewn_lane_tape *whole, const hewn_lane_image_desc *desc, float *values,
                               hewn_lane_image_stats *stats, hewn_error *error)
 {
-    *stats = (hewn_lane_image_stats){.whole_steps = whole->count};
+    *stats = (hewn_lane_image_stats){.whole_steps = hewn_lane_tape_length(whole)};
     return paint_all(&(painting){.desc = desc, .values = values}, whole, stats, error);
 }

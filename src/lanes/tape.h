@@ -3,8 +3,9 @@
  *
  * Shapes are taken apart into arithmetic, in the order in which shaders compute them, so values have the bits that a
  * device gives which rounds every sum, product and root correctly; operations without a kind of their own are computed
- * in double and rounded. A min, max or blend is dropped only where the arithmetic returns the other operand's bits:
- * every tape gives the bits of the whole one in its box. Denormals are kept. */
+ * in double and rounded, and so are outlines, whose sides are dropped where others are nearer. A min, max or blend is
+ * dropped only where the arithmetic returns the other operand's bits: every tape gives the bits of the whole one in its
+ * box. Denormals are kept. */
 #ifndef HEWN_SRC_LANES_TAPE_H
 #define HEWN_SRC_LANES_TAPE_H
 
@@ -38,7 +39,8 @@ typedef enum hewn_lane_kind {
     HEWN_LANE_MAX,
     HEWN_LANE_BLEND, /* the quadratic one of size n */
     HEWN_LANE_OTHER_BLEND,
-    HEWN_LANE_OTHER /* an operation of the field, see hewn_lane_step.node */
+    HEWN_LANE_OTHER,  /* an operation of the field, see hewn_lane_step.node */
+    HEWN_LANE_OUTLINE /* the distance from an outline at (a, b), see hewn_lane_step.node */
 } hewn_lane_kind;
 
 typedef struct hewn_lane_step {
@@ -49,8 +51,24 @@ typedef struct hewn_lane_step {
     uint32_t in[HEWN_LANE_INPUTS];   /* steps, by their place in the tape */
     float number;
     float inverse; /* of a blend's size */
-    uint32_t node; /* of an operation of the field: which of `others` */
+    uint32_t node; /* of an operation of the field: which of `others`; of an outline: which of `outlines` */
 } hewn_lane_step;
+
+/* A side of an outline, and what is wanted of it again and again. */
+typedef struct hewn_lane_side {
+    double from[2], to[2], along[2];
+    double square, inverse; /* of its length's square */
+} hewn_lane_side;
+
+/* The sides of an outline that can be nearest. The others count by what a ray along x does: it crosses an odd number of
+ * them where `odd` says so, and where it does not from each of the heights `turns` on upwards, turn by turn. */
+typedef struct hewn_lane_outline {
+    hewn_lane_side *sides;
+    double *turns;
+    uint32_t side_count, turn_count;
+    double size; /* no coordinate is larger */
+    bool odd;
+} hewn_lane_outline;
 
 typedef struct hewn_lane_tape {
     uint32_t count;
@@ -59,6 +77,8 @@ typedef struct hewn_lane_tape {
     bool owns;     /* `others` is freed with it */
     uint32_t other_count;
     hewn_node_data *others;
+    uint32_t outline_count, side_count; /* sides of all outlines */
+    hewn_lane_outline *outlines;        /* its own, in the order of their steps; NULL: none */
     hewn_lane_step steps[]; /* the last one is the field */
 } hewn_lane_tape;
 
@@ -67,12 +87,21 @@ typedef struct hewn_lane_tape {
 hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_lane_tape **out, hewn_error *error);
 void hewn_lane_tape_destroy(hewn_lane_tape **tape);
 
+/* How long a tape is: its steps, and the sides of its outlines. */
+static inline uint32_t hewn_lane_tape_length(const hewn_lane_tape *tape)
+{
+    return tape->count + tape->side_count;
+}
+
 /* What one thread needs to run a tape and all that are cut from it. Zero is the empty one. */
 typedef struct hewn_lane_work {
     float *values;     /* a row of HEWN_LANES a register and derivative or bound */
     int32_t *choices;  /* of the last bounds: a row for each step that can be cut */
     uint32_t *scratch; /* three for each step */
     uint16_t *held;    /* one for each register */
+    float *places;     /* of the last bounds: four rows for each outline, the lower and upper ends of x and y */
+    double *distances; /* one for each side of an outline */
+    hewn_lane_outline *picked; /* what a tape's outlines are cut down to, in the same block as their sides */
 } hewn_lane_work;
 
 hewn_result hewn_lane_work_create(const hewn_lane_tape *whole, hewn_lane_work *out, hewn_error *error);

@@ -4,35 +4,12 @@
 #include "field/operate.h"
 #include "lanes/internal.h"
 #include "lanes/loops.h"
-
-/* A link of an outline, in double and in the order in which the oracle computes it, without branches. */
-HEWN_LANE_CLONES static void edge(const double *p, const float *before, const float *x, const float *y,
-                                  float *restrict r, uint32_t count)
-{
-    double ex = p[2] - p[0], ey = p[3] - p[1], length = ex * ex + ey * ey;
-    count &= ~(HEWN_LANE_BLOCK - 1U);
-    HEWN_LANE_LOOP(count)
-    {
-        double px = (double)x[i], py = (double)y[i], dx = px - p[0], dy = py - p[1], fx = px - p[2], fy = py - p[3];
-        double t = (dx * ex + dy * ey) / length, cross = ex * dy - ey * dx;
-        int up = p[1] <= py, next = p[3] <= py, crossed = (up != next) & ((cross > 0) == up);
-        double beside = cross * cross / length, first = dx * dx + dy * dy, last = fx * fx + fy * fy;
-        double outside = t >= 1 ? last : first, square = ((t > 0) & (t < 1)) ? beside : outside;
-        double held = (double)fabsf(before[i]), least = ((square < held) | (square != square)) ? square : held;
-        float size = fabsf((float)least), signed_before = crossed ? -before[i] : before[i];
-        r[i] = copysignf(size, signed_before);
-    }
-}
+#include "lanes/outline.h"
 
 /* What no loop here does, one sample after the other. */
 static void other(const hewn_lane_tape *tape, const hewn_lane_step *step, float *rows, uint32_t count)
 {
     const hewn_node_data *node = &tape->others[step->node];
-    if (node->op == HEWN_OP_EDGE) {
-        edge(node->parameter, rows + (size_t)step->from[0] * HEWN_LANES, rows + (size_t)step->from[1] * HEWN_LANES,
-             rows + (size_t)step->from[2] * HEWN_LANES, rows + (size_t)step->out * HEWN_LANES, count);
-        return;
-    }
     for (uint32_t i = 0; i < count; i++) {
         double in[HEWN_LANE_INPUTS] = {0, 0, 0};
         for (uint32_t k = 0; k < step->input_count; k++)
@@ -94,6 +71,7 @@ HEWN_LANE_CLONES static void run(const hewn_lane_tape *tape, float *rows, const 
         case HEWN_LANE_MIN: EACH(least(a[i], b[i]));
         case HEWN_LANE_MAX: EACH(greatest(a[i], b[i]));
         case HEWN_LANE_BLEND: EACH(blend(a[i], b[i], n, step->inverse));
+        case HEWN_LANE_OUTLINE: hewn_lane_outline_value(&tape->outlines[step->node], a, b, r, count); break;
         default: other(tape, step, rows, count);
         }
     }

@@ -46,7 +46,7 @@ static hewn_result divide(const hewn_octree *octree, const hewn_cell *cell, hewn
 
 static bool is_divided(const hewn_cell *cell, uint32_t level)
 {
-    return cell->state == HEWN_CELL_MIXED && level < (cell->tape->count > SHORT ? LEVELS : LEVELS_SHORT);
+    return cell->state == HEWN_CELL_MIXED && level < (hewn_lane_tape_length(cell->tape) > SHORT ? LEVELS : LEVELS_SHORT);
 }
 
 /* Gives places to the children of cells first..end that are divided. */

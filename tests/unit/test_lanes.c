@@ -215,9 +215,139 @@ static void test_outlines(void **state)
     hewn_field_destroy(&field);
 }
 
+/* --- outlines cut down ----------------------------------------------------------------------------------------------
+ */
+
+/* Corners on a coarse lattice, so that many are at one height, many sides are level, and lines cross. */
+static hewn_node random_outline(hewn_field *field, uint64_t *state)
+{
+    enum { MOST = 90 };
+    double points[2 * MOST];
+    size_t count[2] = {3 + (size_t)(0.5 * (uniform(state) + 1) * (MOST / 2 - 4)),
+                       3 + (size_t)(0.5 * (uniform(state) + 1) * (MOST / 2 - 4))};
+    double steps = uniform(state) < 0 ? 6 : 1e6;
+    for (size_t i = 0; i < count[0] + count[1]; i++) {
+        double angle = 6.2832 * (double)i / (double)count[0], radius = 0.3 + 0.6 * fabs(uniform(state));
+        bool star = steps > 6;
+        points[2 * i] = round(steps * (star ? radius * cos(angle) : uniform(state))) / steps;
+        points[2 * i + 1] = round(steps * (star ? radius * sin(angle) : uniform(state))) / steps;
+    }
+    return hewn_contours(field, points, count, uniform(state) < 0 ? 1 : 2);
+}
+
+/* Boxes whose ends are now and then exactly at corners' heights. */
+static void random_box(uint64_t *state, double size, hewn_lane_boxes *boxes, uint32_t lane)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        double middle = 1.3 * uniform(state), half = size * fabs(uniform(state));
+        float lo = (float)(middle - half), hi = (float)(middle + half);
+        if (uniform(state) < -0.5)
+            lo = (float)(round(6 * (double)lo) / 6);
+        if (uniform(state) < -0.5)
+            hi = (float)(round(6 * (double)hi) / 6);
+        boxes->lo[axis][lane] = fminf(lo, hi);
+        boxes->hi[axis][lane] = fmaxf(lo, hi);
+    }
+}
+
+/* Points in a box, some at corners' heights and on its ends. */
+static void snapped_points(const hewn_lane_boxes *boxes, uint32_t lane, uint64_t *state, hewn_lane_points *out)
+{
+    random_points(boxes, lane, state, out);
+    for (int i = 0; i < HEWN_LANES; i += 2)
+        for (int axis = 0; axis < 2; axis++) {
+            float lo = boxes->lo[axis][lane], hi = boxes->hi[axis][lane], *at = &out->at[axis][i];
+            *at = fminf(fmaxf(roundf(6 * *at) / 6, lo), hi);
+        }
+}
+
+static void assert_same_bits(const hewn_lane_tape *whole, const hewn_lane_tape *cut, hewn_lane_work *work,
+                             const hewn_lane_points *points)
+{
+    float a[HEWN_LANES], b[HEWN_LANES], slope[3][HEWN_LANES], other[3][HEWN_LANES];
+    hewn_lanes_value(whole, work, points, HEWN_LANES, a);
+    hewn_lanes_value(cut, work, points, HEWN_LANES, b);
+    assert_memory_equal(a, b, sizeof a);
+    hewn_lanes_gradient(whole, work, points, HEWN_LANES, a, slope);
+    assert_memory_equal(a, b, sizeof a);
+    hewn_lanes_gradient(cut, work, points, HEWN_LANES, b, other);
+    assert_memory_equal(a, b, sizeof a);
+    assert_memory_equal(slope, other, sizeof slope);
+}
+
+/* The box and then ever smaller parts of it, each cut from the last; returns how many sides the last one has. */
+static uint32_t cut_and_compare(const hewn_lane_tape *tape, hewn_lane_work *work, uint64_t *random)
+{
+    enum { ROUNDS = 4 };
+    hewn_lane_tape *made[ROUNDS] = {NULL};
+    const hewn_lane_tape *from = tape;
+    hewn_lane_boxes boxes;
+    for (uint32_t lane = 0; lane < HEWN_LANE_BLOCK; lane++)
+        random_box(random, 0.4, &boxes, lane);
+    for (int round = 0; round < ROUNDS; round++) {
+        hewn_lane_points points;
+        float lo[HEWN_LANES], hi[HEWN_LANES], values[HEWN_LANES];
+        hewn_lanes_bound(from, work, &boxes, HEWN_LANE_BLOCK, lo, hi);
+        assert_int_equal(hewn_lane_tape_cut(from, work, 5, &made[round], NULL), HEWN_OK);
+        from = made[round] ? made[round] : from;
+        snapped_points(&boxes, 5, random, &points);
+        assert_same_bits(tape, from, work, &points);
+        hewn_lanes_value(from, work, &points, HEWN_LANES, values);
+        for (int i = 0; i < HEWN_LANES; i++)
+            assert_true(lo[5] <= values[i] && values[i] <= hi[5]);
+        for (int axis = 0; axis < 3; axis++) {
+            float middle = 0.5F * (boxes.lo[axis][5] + boxes.hi[axis][5]);
+            *(uniform(random) < 0 ? &boxes.lo[axis][5] : &boxes.hi[axis][5]) = middle;
+        }
+    }
+    uint32_t sides = from->side_count;
+    for (int round = 0; round < ROUNDS; round++)
+        hewn_lane_tape_destroy(&made[round]);
+    return sides;
+}
+
+/* Whatever sides a box leaves, the bits there are those of all of them; and sign and distance are the oracle's. */
+static void test_outline_cuts(void **state)
+{
+    (void)state;
+    uint64_t random = 5, all = 0, left = 0;
+    for (int round = 0; round < 150; round++) {
+        hewn_field *field;
+        assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+        hewn_node shape = random_outline(field, &random);
+        if (round % 3 == 1)
+            shape = hewn_union(field, random_outline(field, &random),
+                               hewn_extrude(field, hewn_difference(field, random_outline(field, &random), shape), 0.5));
+        if (round % 3 == 2)
+            shape = hewn_rotate(field, hewn_extrude(field, shape, 1), 1, uniform(&random), 2, 3 * uniform(&random));
+        assert_int_equal(hewn_field_set_root(field, shape, NULL), HEWN_OK);
+        hewn_lane_work work;
+        hewn_lane_tape *tape = whole_of(field, &work);
+        for (int k = 0; k < 20; k++) {
+            all += tape->side_count;
+            left += cut_and_compare(tape, &work, &random);
+        }
+        const hewn_lane_boxes box = {.lo = {{-1}, {-1}, {-1}}, .hi = {{1}, {1}, {1}}};
+        hewn_lane_points points;
+        float values[HEWN_LANES];
+        random_points(&box, 0, &random, &points);
+        hewn_lanes_value(tape, &work, &points, HEWN_LANES, values);
+        for (int i = 0; i < HEWN_LANES; i++) {
+            double p[3] = {(double)points.at[0][i], (double)points.at[1][i], (double)points.at[2][i]}, expected;
+            assert_int_equal(hewn_field_eval(field, hewn_field_root(field), p, 1, &expected, NULL), HEWN_OK);
+            assert_true(fabs((double)values[i] - expected) < 1e-5);
+        }
+        hewn_lane_work_destroy(&work);
+        hewn_lane_tape_destroy(&tape);
+        hewn_field_destroy(&field);
+    }
+    assert_true(left * 5 < all);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_outlines), cmocka_unit_test(test_values),
-                                       cmocka_unit_test(test_cuts), cmocka_unit_test(test_image)};
+                                       cmocka_unit_test(test_cuts), cmocka_unit_test(test_image),
+                                       cmocka_unit_test(test_outline_cuts)};
     return cmocka_run_group_tests_name("lanes", tests, NULL, NULL);
 }
