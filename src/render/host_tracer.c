@@ -29,11 +29,19 @@ typedef struct walker {
     bool met, ran_out, asks;
 } walker;
 
+/* A point, or a ray, and whose tape it needs. */
+typedef struct wanting {
+    uint32_t owner;
+    uint32_t number;
+} wanting;
+
 /* What a thread has. */
 typedef struct crew {
     const host_tracer *tracer;
     const hewn_stage *stage;
     hewn_lane_work work;
+    uint32_t *waiting; /* one for each cell, 0 but while items are put in order */
+    wanting items[PACK * TAPS], sorted[PACK * TAPS];
 } crew;
 
 static void place(const hewn_ray *ray, float t, float out[3])
@@ -47,8 +55,9 @@ static void clip(const float lo[3], const float hi[3], const hewn_ray *ray, floa
 {
     for (int axis = 0; axis < 3; axis++) {
         float a = (lo[axis] - ray->from[axis]) / ray->along[axis], b = (hi[axis] - ray->from[axis]) / ray->along[axis];
-        *begin = fmaxf(*begin, fminf(a, b));
-        *end = fminf(*end, fmaxf(a, b));
+        float first = a < b ? a : b, last = a < b ? b : a;
+        *begin = first > *begin ? first : *begin;
+        *end = last < *end ? last : *end;
     }
 }
 
@@ -72,45 +81,57 @@ static void fill_up(hewn_lane_points *points, uint32_t *count)
             points->at[axis][*count] = points->at[axis][last];
 }
 
-/* A point, or a ray, and the tape that it needs. */
-typedef struct wanting {
-    const hewn_lane_tape *tape;
-    uint32_t number;
-} wanting;
-
-static int by_tape(const void *a, const void *b)
+/* Items of one owner after another, owners as they come first. */
+static void put_together(crew *c, uint32_t count)
 {
-    const wanting *p = a, *q = b;
-    if (p->tape != q->tape)
-        return (uintptr_t)p->tape < (uintptr_t)q->tape ? -1 : 1;
-    return (p->number > q->number) - (p->number < q->number);
+    const wanting *items = c->items;
+    uint32_t owners[PACK * TAPS], owner_count = 0, place = 0, *waiting = c->waiting;
+    for (uint32_t i = 0; i < count; i++)
+        if (waiting[items[i].owner]++ == 0)
+            owners[owner_count++] = items[i].owner;
+    for (uint32_t i = 0; i < owner_count; i++) {
+        uint32_t length = waiting[owners[i]];
+        waiting[owners[i]] = place;
+        place += length;
+    }
+    for (uint32_t i = 0; i < count; i++)
+        c->sorted[waiting[items[i].owner]++] = items[i];
+    for (uint32_t i = 0; i < owner_count; i++)
+        waiting[owners[i]] = 0;
 }
 
 /* How many after `first` want the same tape, at most as many as there are lanes. */
 static uint32_t run_of(const wanting *sorted, uint32_t first, uint32_t count)
 {
     uint32_t end = first + 1;
-    while (end < count && end - first < HEWN_LANES && sorted[end].tape == sorted[first].tape)
+    while (end < count && end - first < HEWN_LANES && sorted[end].owner == sorted[first].owner)
         end++;
     return end - first;
 }
 
-static void visit_points(crew *c, const float (*p)[3], uint32_t count, visit *each, void *out)
+static const hewn_lane_tape *tape_of(const crew *c, uint32_t owner)
 {
-    wanting sorted[PACK * TAPS];
-    uint32_t which[HEWN_LANES];
+    return c->tracer->octree.cells[owner].tape;
+}
+
+/* Those of the points that `wanted` says, all where it is NULL. */
+static void visit_points(crew *c, const float (*p)[3], const uint8_t *wanted, uint32_t count, visit *each, void *out)
+{
+    const wanting *sorted = c->sorted;
+    uint32_t which[HEWN_LANES], left = 0;
     for (uint32_t i = 0; i < count; i++)
-        sorted[i] = (wanting){hewn_octree_find(&c->tracer->octree, p[i])->tape, i};
-    qsort(sorted, count, sizeof *sorted, by_tape);
-    for (uint32_t first = 0, taken; first < count; first += taken) {
+        if (!wanted || wanted[i])
+            c->items[left++] = (wanting){hewn_octree_find(&c->tracer->octree, p[i])->owner, i};
+    put_together(c, left);
+    for (uint32_t first = 0, taken; first < left; first += taken) {
         hewn_lane_points points;
-        taken = run_of(sorted, first, count);
+        taken = run_of(sorted, first, left);
         for (uint32_t i = 0; i < taken; i++) {
             which[i] = sorted[first + i].number;
             for (int axis = 0; axis < 3; axis++)
                 points.at[axis][i] = p[which[i]][axis];
         }
-        each(c, sorted[first].tape, &points, which, taken, out);
+        each(c, tape_of(c, sorted[first].owner), &points, which, taken, out);
     }
 }
 
@@ -151,7 +172,8 @@ static bool find_cell(crew *c, walker *w)
         place(w->ray, w->t, p);
         w->cell = hewn_octree_find(octree, p);
         clip(w->cell->lo, w->cell->hi, w->ray, &begin, &end);
-        w->after = fminf(fmaxf(end, w->t) + 0.5F * octree->margin, w->end);
+        w->after = (end > w->t ? end : w->t) + 0.5F * octree->margin;
+        w->after = w->after < w->end ? w->after : w->end;
         if (w->cell->state != HEWN_CELL_EMPTY) {
             w->after = fminf(w->after, w->t + w->stride);
             return true;
@@ -263,7 +285,7 @@ static void trace_together(crew *c, const hewn_lane_tape *tape, walker *const *g
 static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
 {
     walker *active[PACK];
-    wanting sorted[PACK];
+    const wanting *sorted = c->sorted;
     uint32_t left = 0;
     for (uint32_t i = 0; i < count; i++)
         active[left++] = &walkers[i];
@@ -280,17 +302,17 @@ static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
         }
         left = kept;
         for (uint32_t i = 0; i < left; i++)
-            sorted[i] = (wanting){active[i]->cell->tape, i};
-        qsort(sorted, left, sizeof *sorted, by_tape);
+            c->items[i] = (wanting){active[i]->cell->owner, i};
+        put_together(c, left);
         for (uint32_t first = 0, taken; first < left; first += taken) {
             walker *group[HEWN_LANES];
             taken = run_of(sorted, first, left);
             for (uint32_t i = 0; i < taken; i++)
                 group[i] = active[sorted[first + i].number];
             if (c->tracer->steepness > 0)
-                trace_together(c, sorted[first].tape, group, taken);
+                trace_together(c, tape_of(c, sorted[first].owner), group, taken);
             else
-                step_together(c, sorted[first].tape, group, taken);
+                step_together(c, tape_of(c, sorted[first].owner), group, taken);
         }
     }
 }
@@ -337,18 +359,21 @@ static void meet_ground(const hewn_stage *stage, const hewn_ray *ray, hewn_met *
 static void settle_normals(crew *c, const hewn_ray *rays, hewn_met *met, const uint8_t *capped, uint32_t count)
 {
     float points[PACK][3], slopes[PACK][4];
-    for (uint32_t i = 0; i < count; i++)
-        place(&rays[i], met[i].what == HEWN_MET_SURFACE ? met[i].t : rays[i].begin, points[i]);
-    visit_points(c, (const float(*)[3])points, count, take_gradients, slopes);
+    uint8_t wanted[PACK];
+    for (uint32_t i = 0; i < count; i++) {
+        place(&rays[i], met[i].t, points[i]);
+        wanted[i] = met[i].what == HEWN_MET_SURFACE && !capped[i];
+    }
+    visit_points(c, (const float(*)[3])points, wanted, count, take_gradients, slopes);
     for (uint32_t i = 0; i < count; i++) {
         if (met[i].what != HEWN_MET_SURFACE)
             continue;
         const float *g = &slopes[i][1], *along = rays[i].along;
-        float steep = sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), facing = 0;
         if (capped[i]) {
             face_normal(c->tracer->octree.cells, points[i], along, met[i].normal);
             continue;
         }
+        float steep = sqrtf(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), facing = 0;
         for (int axis = 0; axis < 3; axis++) {
             met[i].normal[axis] = steep > 0 && steep < FAR_AWAY ? g[axis] / steep : -along[axis];
             facing -= met[i].normal[axis] * along[axis];
@@ -357,6 +382,24 @@ static void settle_normals(crew *c, const hewn_ray *rays, hewn_met *met, const u
         if (fabsf(rest) < 2 * enough(c->stage, met[i].t))
             met[i].t += rest;
     }
+}
+
+/* Passes cells in which the field is too far above 0 to dim the light; false where the way to it ends. */
+static bool pass_bright(const crew *c, walker *w, float end)
+{
+    const hewn_octree *octree = &c->tracer->octree;
+    float dimming = c->stage->softness * c->tracer->slope;
+    for (uint32_t i = 0; i < 4 * HEWN_SKIP_STEPS && w->t < end; i++) {
+        float p[3], begin = 0, out = FAR_AWAY;
+        place(w->ray, w->t, p);
+        const hewn_cell *cell = hewn_octree_find(octree, p);
+        clip(cell->lo, cell->hi, w->ray, &begin, &out);
+        out = (out > w->t ? out : w->t) + 0.5F * octree->margin;
+        if (!(cell->least >= dimming * out))
+            return true;
+        w->t = out;
+    }
+    return false;
 }
 
 /* As edge_light() of the shader, all walkers together. */
@@ -369,11 +412,11 @@ static void find_edges(crew *c, walker *walkers, const float *ends, hewn_met *co
     for (uint32_t round = 0; round < HEWN_LIGHT_STEPS; round++) {
         uint32_t which[PACK], left = 0;
         for (uint32_t i = 0; i < count; i++)
-            if (!walkers[i].met && walkers[i].t < ends[i]) {
+            if (!walkers[i].met && lit[i]->light > 0 && pass_bright(c, &walkers[i], ends[i])) {
                 place(walkers[i].ray, walkers[i].t, points[left]);
                 which[left++] = i;
             }
-        visit_points(c, (const float(*)[3])points, left, take_values, values);
+        visit_points(c, (const float(*)[3])points, NULL, left, take_values, values);
         for (uint32_t i = 0; i < left; i++) {
             walker *w = &walkers[which[i]];
             float free = values[i] / c->tracer->slope;
@@ -419,6 +462,7 @@ static void find_openness(crew *c, const float (*p)[3], hewn_met *const *lit, ui
 {
     const hewn_cell *root = c->tracer->octree.cells;
     float points[PACK * TAPS][3], values[PACK * TAPS], outside[PACK * TAPS];
+    uint8_t wanted[PACK * TAPS];
     for (uint32_t i = 0; i < count * TAPS; i++) {
         const uint32_t tap = i % TAPS + 1;
         float height = c->stage->reach * (float)(tap * tap) / (TAPS * TAPS), square = 0;
@@ -428,8 +472,11 @@ static void find_openness(crew *c, const float (*p)[3], hewn_met *const *lit, ui
             square += (at - points[i][axis]) * (at - points[i][axis]);
         }
         outside[i] = sqrtf(square);
+        const hewn_cell *cell = hewn_octree_find(&c->tracer->octree, points[i]);
+        wanted[i] = !(cell->least >= height * c->tracer->slope) && !(outside[i] >= height);
+        values[i] = FAR_AWAY; /* where nothing is that near, whatever the value */
     }
-    visit_points(c, (const float(*)[3])points, count * TAPS, take_values, values);
+    visit_points(c, (const float(*)[3])points, wanted, count * TAPS, take_values, values);
     for (uint32_t i = 0; i < count; i++) {
         float taken = 0, all = 0, weight = 1;
         for (uint32_t tap = 1; tap <= TAPS; tap++, weight *= 0.7F) {
@@ -464,15 +511,17 @@ static void shade(crew *c, const hewn_ray *rays, hewn_met *met, uint32_t count)
 static void trace_pack(crew *c, const hewn_ray *rays, uint32_t count, hewn_met *met)
 {
     walker walkers[PACK];
-    uint8_t capped[PACK];
+    uint8_t capped[PACK], wanted[PACK];
     float points[PACK][3], values[PACK];
     for (uint32_t i = 0; i < count; i++) {
         walkers[i] = start(c, &rays[i]);
         place(&rays[i], walkers[i].t, points[i]);
+        wanted[i] = walkers[i].t < walkers[i].end &&
+                    hewn_octree_find(&c->tracer->octree, points[i])->state != HEWN_CELL_EMPTY;
     }
-    visit_points(c, (const float(*)[3])points, count, take_values, values);
+    visit_points(c, (const float(*)[3])points, wanted, count, take_values, values);
     for (uint32_t i = 0; i < count; i++) {
-        capped[i] = walkers[i].t < walkers[i].end && values[i] < 0;
+        capped[i] = wanted[i] && values[i] < 0;
         walkers[i].met = capped[i];
     }
     march(c, walkers, count, HEWN_RAY_STEPS);
@@ -494,8 +543,12 @@ static hewn_result trace(void *self, const hewn_stage *stage, const hewn_ray *ra
     hewn_result all = HEWN_OK;
 #pragma omp parallel
     {
-        crew c = {.tracer = tracer, .stage = stage};
+        crew c;
+        c.tracer = tracer;
+        c.stage = stage;
         hewn_result result = hewn_lane_work_create(tracer->octree.whole, &c.work, NULL);
+        c.waiting = hewn_alloc_zero(tracer->octree.count, sizeof *c.waiting);
+        result = c.waiting ? result : HEWN_OUT_OF_MEMORY;
 #pragma omp for schedule(dynamic)
         for (size_t first = 0; first < count; first += PACK) {
             uint32_t taken = (uint32_t)(count - first < PACK ? count - first : PACK);
@@ -505,6 +558,7 @@ static hewn_result trace(void *self, const hewn_stage *stage, const hewn_ray *ra
 #pragma omp critical(hewn_host_tracer)
         all = all == HEWN_OK ? result : all;
         hewn_lane_work_destroy(&c.work);
+        hewn_free(c.waiting);
     }
     return all == HEWN_OK ? HEWN_OK : hewn_fail(error, all, "out of memory following rays");
 }

@@ -6,7 +6,7 @@
 #include "base/error.h"
 
 /* Cells are halved where tapes are long until they are 2^-6 of the box, and where they are short to 2^-4. */
-enum { LEVELS = 6, LEVELS_SHORT = 4, SHORT = 32, CHILDREN = 8 };
+enum { LEVELS = 6, LEVELS_SHORT = 4, SHORT = 32, CHILDREN = 8, ACROSS = 1 << LEVELS };
 
 static void box_child(const hewn_cell *cell, uint32_t child, float lo[3], float hi[3])
 {
@@ -25,7 +25,7 @@ static hewn_result divide(const hewn_octree *octree, const hewn_cell *cell, hewn
     hewn_lane_boxes boxes;
     float lo[HEWN_LANES], hi[HEWN_LANES];
     for (uint32_t i = 0; i < CHILDREN; i++) {
-        children[i] = (hewn_cell){.tape = cell->tape};
+        children[i] = (hewn_cell){.tape = cell->tape, .owner = cell->owner};
         box_child(cell, i, children[i].lo, children[i].hi);
         for (int axis = 0; axis < 3; axis++) {
             boxes.lo[axis][i] = children[i].lo[axis] - octree->margin;
@@ -38,8 +38,11 @@ static hewn_result divide(const hewn_octree *octree, const hewn_cell *cell, hewn
         /* What is decided needs no tape of its own: values there are for light only. */
         if (lo[i] > -INFINITY && children[i].state == HEWN_CELL_MIXED)
             HEWN_TRY(hewn_lane_tape_cut(cell->tape, work, i, &children[i].own, error));
-        if (children[i].own)
+        children[i].least = lo[i];
+        if (children[i].own) {
             children[i].tape = children[i].own;
+            children[i].owner = cell->children + i;
+        }
     }
     return HEWN_OK;
 }
@@ -97,7 +100,7 @@ static hewn_result divide_level(hewn_octree *octree, size_t first, size_t end, h
 static hewn_result grow(hewn_octree *octree, const hewn_box *box, hewn_error *error)
 {
     HEWN_TRY(hewn_reserve((void **)&octree->cells, &octree->capacity, 1, sizeof *octree->cells, error));
-    octree->cells[0] = (hewn_cell){.tape = octree->whole, .state = HEWN_CELL_MIXED};
+    octree->cells[0] = (hewn_cell){.tape = octree->whole, .state = HEWN_CELL_MIXED, .least = -INFINITY};
     octree->count = 1;
     double most = 0, far = 0;
     for (int axis = 0; axis < 3; axis++) {
@@ -117,12 +120,50 @@ static hewn_result grow(hewn_octree *octree, const hewn_box *box, hewn_error *er
     return HEWN_OK;
 }
 
+/* Enters a cell of level `level` whose first part of the lattice is `at`. */
+static void enter(hewn_octree *octree, uint32_t number, const uint32_t at[3], uint32_t level)
+{
+    uint32_t across = (uint32_t)ACROSS >> level;
+    for (uint32_t z = at[2]; z < at[2] + across; z++)
+        for (uint32_t y = at[1]; y < at[1] + across; y++)
+            for (uint32_t x = at[0]; x < at[0] + across; x++)
+                octree->finest[x + ACROSS * (y + (size_t)ACROSS * z)] = number;
+}
+
+static void enter_below(hewn_octree *octree, uint32_t number, const uint32_t at[3], /* NOLINT(misc-no-recursion) */
+                        uint32_t level)
+{
+    uint32_t children = octree->cells[number].children;
+    if (children == 0) {
+        enter(octree, number, at, level);
+        return;
+    }
+    for (uint32_t i = 0; i < CHILDREN; i++) {
+        uint32_t half = (uint32_t)ACROSS >> (level + 1);
+        const uint32_t to[3] = {at[0] + (i & 1) * half, at[1] + (i >> 1 & 1) * half, at[2] + (i >> 2) * half};
+        enter_below(octree, children + i, to, level + 1);
+    }
+}
+
+static hewn_result make_lattice(hewn_octree *octree, hewn_error *error)
+{
+    octree->finest = hewn_alloc((size_t)ACROSS * ACROSS * ACROSS, sizeof *octree->finest);
+    if (!octree->finest)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the cells of a field");
+    for (int axis = 0; axis < 3; axis++)
+        octree->scale[axis] = ACROSS / (octree->cells[0].hi[axis] - octree->cells[0].lo[axis]);
+    enter_below(octree, 0, (const uint32_t[3]){0, 0, 0}, 0);
+    return HEWN_OK;
+}
+
 hewn_result hewn_octree_create(const hewn_field *field, hewn_node root, const hewn_box *box, hewn_octree *out,
                                hewn_error *error)
 {
     *out = (hewn_octree){0};
     HEWN_TRY(hewn_lane_tape_create(field, root, &out->whole, error));
     hewn_result result = grow(out, box, error);
+    if (result == HEWN_OK)
+        result = make_lattice(out, error);
     if (result != HEWN_OK)
         hewn_octree_destroy(out);
     return result;
@@ -133,18 +174,17 @@ void hewn_octree_destroy(hewn_octree *octree)
     for (size_t i = 0; i < octree->count; i++)
         hewn_lane_tape_destroy(&octree->cells[i].own);
     hewn_free(octree->cells);
+    hewn_free(octree->finest);
     hewn_lane_tape_destroy(&octree->whole);
     *octree = (hewn_octree){0};
 }
 
 const hewn_cell *hewn_octree_find(const hewn_octree *octree, const float p[3])
 {
-    const hewn_cell *cell = octree->cells;
-    while (cell->children != 0) {
-        uint32_t child = 0;
-        for (uint32_t axis = 0; axis < 3; axis++)
-            child |= (uint32_t)(p[axis] >= 0.5F * (cell->lo[axis] + cell->hi[axis])) << axis;
-        cell = &octree->cells[cell->children + child];
+    uint32_t at[3];
+    for (int axis = 0; axis < 3; axis++) { /* rounding takes a point beyond its cell by less than the margin */
+        float place = (p[axis] - octree->cells[0].lo[axis]) * octree->scale[axis];
+        at[axis] = place > 0 ? place < ACROSS - 1 ? (uint32_t)place : ACROSS - 1U : 0;
     }
-    return cell;
+    return &octree->cells[octree->finest[at[0] + ACROSS * (at[1] + (size_t)ACROSS * at[2])]];
 }

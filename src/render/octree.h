@@ -15,6 +15,8 @@ typedef struct hewn_cell {
     float lo[3], hi[3];
     uint32_t children; /* the first of eight, x fastest; 0: none */
     hewn_cell_state state;
+    float least;                /* the field is nowhere below this in the cell and a little beyond */
+    uint32_t owner;             /* the cell that the tape was made for */
     const hewn_lane_tape *tape; /* enough in the cell and a little beyond: see HEWN_CELL_MARGIN */
     hewn_lane_tape *own;        /* the same where it was made for this cell, else NULL */
 } hewn_cell;
@@ -27,6 +29,8 @@ typedef struct hewn_octree {
     hewn_cell *cells; /* the root first */
     size_t count, capacity;
     float margin;
+    uint32_t *finest; /* the cell of each part of a lattice as fine as the smallest cells are, x fastest */
+    float scale[3];   /* from coordinates to those of the lattice */
 } hewn_octree;
 
 /* HEWN_OUT_OF_MEMORY, and what hewn_lane_tape_create() returns. */
