@@ -25,6 +25,7 @@ typedef struct walker {
     const hewn_ray *ray;
     const hewn_cell *cell;
     float t, begin, end, stride, after;
+    float free, sure, lean; /* of the step that led to t, see trace_together() */
     uint32_t steps;
     bool met, ran_out, asks;
 } walker;
@@ -252,8 +253,78 @@ static void step_together(crew *c, const hewn_lane_tape *tape, walker *const *gr
     ask_values(c, tape, group, count);
 }
 
-/* Where slopes are bounded (Hart 1996): a value is how far the surface is at least. Where that is less than what is on
- * the surface, the way is as long as that, and its end is asked next. */
+/* Back to where the last sphere ends, or what is on the surface: so far the way is free whatever is farther on. */
+static void step_back(walker *w)
+{
+    w->t += w->sure - w->stride;
+    w->stride = w->sure;
+    w->lean = -1;
+}
+
+/* Whether nothing can be between the last place and this one, where the surface is not within `radius`. */
+static bool is_proven(const walker *w, float radius)
+{
+    return w->stride <= w->sure || w->stride <= w->free + radius;
+}
+
+/* Passes empty cells by spheres; false where the ray is at its end. */
+static bool find_cell_of_sphere(crew *c, walker *w)
+{
+    const hewn_octree *octree = &c->tracer->octree;
+    for (uint32_t i = 0; i < 4 * HEWN_SKIP_STEPS; i++) {
+        float p[3], begin = 0, end = FAR_AWAY;
+        if (w->t >= w->end && w->stride <= w->sure)
+            return false;
+        if (w->t >= w->end) {
+            step_back(w);
+            continue;
+        }
+        place(w->ray, w->t, p);
+        w->cell = hewn_octree_find(octree, p);
+        bool empty = w->cell->state == HEWN_CELL_EMPTY, full = w->cell->state == HEWN_CELL_FULL;
+        if (!empty && !full)
+            return true;
+        if (!is_proven(w, empty ? w->cell->least / c->tracer->steepness : -FAR_AWAY)) {
+            step_back(w);
+            continue;
+        }
+        if (full)
+            return true;
+        clip(w->cell->lo, w->cell->hi, w->ray, &begin, &end);
+        w->t = (end > w->t ? end : w->t) + 0.5F * octree->margin;
+        w->begin = w->t; /* what is before is free */
+        w->stride = w->sure = w->free = 0;
+        w->lean = -1;
+    }
+    return false;
+}
+
+static void take_sphere(const crew *c, walker *w, float value)
+{
+    const host_tracer *tracer = c->tracer;
+    float radius = (value - tracer->slack) / tracer->steepness, near_enough = enough(c->stage, w->t);
+    w->steps++;
+    if (!is_proven(w, value > 0 ? radius : -FAR_AWAY)) {
+        step_back(w);
+        return;
+    }
+    w->met = value <= 0;
+    if (w->met) { /* a step by the value itself ends on the surface, or by rounding a little behind */
+        w->t = fmaxf(w->t - fminf(w->stride, near_enough), w->begin);
+        return;
+    }
+    if (w->stride > 0)
+        w->lean = 0.7F * w->lean + 0.3F * ((radius - w->free) / w->stride);
+    w->free = radius > 0 && radius < FAR_AWAY ? radius : 0;
+    w->sure = fmaxf(w->free, near_enough);
+    w->stride = fmaxf(2 * w->free / (1 - fminf(w->lean, 0.8F)), w->sure);
+    w->t += w->stride;
+}
+
+/* Where slopes are bounded (Hart 1996): a value over the slope is how far the surface is at least. Steps are as long as
+ * to where the next sphere would touch this one if values went on as they did (automatic relaxation, Ban and Valasek
+ * 2023); where it does not reach back so far, or ends behind the surface, the step is taken back. Spheres smaller than
+ * what is on the surface count as that, and the end of the way is asked next. */
 static void trace_together(crew *c, const hewn_lane_tape *tape, walker *const *group, uint32_t count)
 {
     hewn_lane_points points;
@@ -267,18 +338,8 @@ static void trace_together(crew *c, const hewn_lane_tape *tape, walker *const *g
     }
     fill_up(&points, &lanes);
     hewn_lanes_value(tape, &c->work, &points, lanes, values);
-    for (uint32_t i = 0; i < count; i++) {
-        walker *w = group[i];
-        w->steps++;
-        w->met = values[i] <= 0;
-        if (w->met) { /* a step by the value itself ends on the surface, or by rounding a little behind */
-            w->t = fmaxf(w->t - fminf(w->stride, enough(c->stage, w->t)), w->begin);
-            continue;
-        }
-        w->stride = fmaxf((values[i] - c->tracer->slack) / c->tracer->steepness, enough(c->stage, w->t));
-        w->stride = w->stride < FAR_AWAY ? w->stride : enough(c->stage, w->t);
-        w->t += w->stride;
-    }
+    for (uint32_t i = 0; i < count; i++)
+        take_sphere(c, group[i], values[i]);
 }
 
 /* Until all have met something, or ended, or taken `most` steps. */
@@ -293,7 +354,7 @@ static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
         uint32_t kept = 0;
         for (uint32_t i = 0; i < left; i++) {
             walker *w = active[i];
-            if (w->met || !find_cell(c, w))
+            if (w->met || !(c->tracer->steepness > 0 ? find_cell_of_sphere(c, w) : find_cell(c, w)))
                 continue;
             w->ran_out = w->steps >= most;
             w->met = w->ran_out || w->cell->state == HEWN_CELL_FULL;

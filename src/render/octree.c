@@ -35,8 +35,8 @@ static hewn_result divide(const hewn_octree *octree, const hewn_cell *cell, hewn
     hewn_lanes_bound(cell->tape, work, &boxes, CHILDREN, lo, hi);
     for (uint32_t i = 0; i < CHILDREN; i++) {
         children[i].state = lo[i] > 0 ? HEWN_CELL_EMPTY : hi[i] < 0 ? HEWN_CELL_FULL : HEWN_CELL_MIXED;
-        /* What is decided needs no tape of its own: values there are for light only. */
-        if (lo[i] > -INFINITY && children[i].state == HEWN_CELL_MIXED)
+        /* Behind the surface nothing is asked. */
+        if (lo[i] > -INFINITY && children[i].state != HEWN_CELL_FULL)
             HEWN_TRY(hewn_lane_tape_cut(cell->tape, work, i, &children[i].own, error));
         children[i].least = lo[i];
         if (children[i].own) {
