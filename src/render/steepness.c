@@ -9,10 +9,12 @@
 #include "field/operate.h"
 #include "render/tracer.h"
 
-/* What is known of a node: its values, its slope, and, where it is a linear form of x, y and z, that. */
+/* What is known of a node: its values, its slope, and, where it is a linear form of x, y and z, that. Its gradient g
+ * lies within an ellipsoid: (g v)² <= v F v for each vector v. */
 typedef struct steep {
     hewn_interval range;
     double bound;
+    double form[3][3]; /* F */
     bool linear;
     double row[3];
 } steep;
@@ -22,41 +24,85 @@ static double length(const double *v)
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* The largest singular value of a matrix, from above: the power 2^-5 of the trace of the 32nd power of its square. */
-static double spectral_norm(const double rows[3][3])
+/* --- forms ----------------------------------------------------------------------------------------------------------
+ */
+
+/* The largest eigenvalue of a form, from above: the power 2^-5 of the trace of its 32nd power. */
+static double greatest_eigenvalue(const double form[3][3])
 {
     double s[9], scale = 0;
     for (int i = 0; i < 9; i++) {
-        const double *a = rows[i / 3], *b = rows[i % 3];
-        s[i] = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        s[i] = form[i / 3][i % 3];
         scale = fmax(scale, fabs(s[i]));
     }
     if (!(scale > 0) || !isfinite(scale))
-        return sqrt(scale);
+        return scale;
     for (int i = 0; i < 9; i++)
         s[i] /= scale;
+    double bound = s[0] + s[4] + s[8];
     for (int power = 0; power < 5; power++) {
         double t[9];
         for (int i = 0; i < 9; i++)
             t[i] = s[i / 3 * 3] * s[i % 3] + s[i / 3 * 3 + 1] * s[3 + i % 3] + s[i / 3 * 3 + 2] * s[6 + i % 3];
         memcpy(s, t, sizeof s);
     }
-    return sqrt(scale * pow(s[0] + s[4] + s[8], 1.0 / 32)) * (1 + 1e-12);
+    double rows = 0; /* no eigenvalue is larger than a row's sum of sizes, which is exact for diagonal forms */
+    for (int i = 0; i < 3; i++)
+        rows = fmax(rows, fabs(form[i][0]) + fabs(form[i][1]) + fabs(form[i][2]));
+    bound = fmin(bound, pow(s[0] + s[4] + s[8], 1.0 / 32));
+    return fmin(scale * bound * (1 + 1e-12), rows);
 }
 
-/* How steep (a, b, c) is as a vector. */
-static double joint(const steep *in, uint32_t count)
+/* The form of a gradient of which only the length is known. */
+static void set_round(steep *out)
 {
-    double rows[3][3] = {{0}}, sum = 0;
-    bool linear = true;
-    for (uint32_t k = 0; k < count; k++) {
-        linear = linear && in[k].linear;
-        sum += in[k].bound * in[k].bound;
-        for (int j = 0; j < 3; j++)
-            rows[k][j] = in[k].row[j];
-    }
-    return linear ? fmin(spectral_norm((const double(*)[3])rows), sqrt(sum)) : sqrt(sum);
+    memset(out->form, 0, sizeof out->form);
+    for (int i = 0; i < 3; i++)
+        out->form[i][i] = out->bound * out->bound;
 }
+
+static void set_scaled(steep *out, const steep *from)
+{
+    double factor = from->bound > 0 && isfinite(from->bound) ? out->bound / from->bound : 0;
+    for (int i = 0; i < 9; i++)
+        out->form[i / 3][i % 3] = factor * factor * from->form[i / 3][i % 3];
+}
+
+static bool is_diagonal(const steep *a)
+{
+    return a->form[0][1] == 0 && a->form[0][2] == 0 && a->form[1][2] == 0;
+}
+
+/* Of what has one of two gradients, or a mean of them. */
+static void set_either(steep *out, const steep *a, const steep *b)
+{
+    out->bound = fmax(a->bound, b->bound);
+    if (a->bound == 0 || b->bound == 0 || memcmp(a->form, b->form, sizeof a->form) == 0) {
+        memcpy(out->form, b->bound == 0 ? a->form : b->form, sizeof out->form);
+    } else if (is_diagonal(a) && is_diagonal(b)) {
+        memset(out->form, 0, sizeof out->form);
+        for (int i = 0; i < 3; i++)
+            out->form[i][i] = fmax(a->form[i][i], b->form[i][i]);
+    } else {
+        set_round(out);
+    }
+}
+
+/* Of what grows with the vector (a, b, c) no faster than that is long. */
+static void set_joint(steep *out, const steep *in, uint32_t count)
+{
+    double sum = 0;
+    memset(out->form, 0, sizeof out->form);
+    for (uint32_t k = 0; k < count; k++) {
+        sum += in[k].bound * in[k].bound;
+        for (int i = 0; i < 9; i++)
+            out->form[i / 3][i % 3] += in[k].form[i / 3][i % 3];
+    }
+    out->bound = sqrt(isfinite(sum) ? fmin(greatest_eigenvalue((const double(*)[3])out->form), sum) : sum);
+}
+
+/* --- operations -----------------------------------------------------------------------------------------------------
+ */
 
 static double size(hewn_interval range)
 {
@@ -95,20 +141,13 @@ static double binary(hewn_op op, const steep *a, const steep *b)
     case HEWN_OP_SUB: return a->bound + b->bound;
     case HEWN_OP_MUL: return times(size(b->range), a->bound) + times(size(a->range), b->bound);
     case HEWN_OP_DIV: return nearest > 0 ? (a->bound + times(size(a->range) / nearest, b->bound)) / nearest : INFINITY;
-    case HEWN_OP_MIN:
-    case HEWN_OP_MAX:
-    case HEWN_OP_BLEND_QUADRATIC: /* the gradient of a blend is a mean of its operands' */
-    case HEWN_OP_BLEND_CUBIC:
-    case HEWN_OP_BLEND_CIRCULAR:
-    case HEWN_OP_BLEND_EXPONENTIAL: return fmax(a->bound, b->bound);
     default: return times(INFINITY, a->bound + b->bound);
     }
 }
 
-/* The root of a sum of squares is a length, and no steeper than what is squared is as a vector. */
-static double root(const hewn_field *field, const hewn_node_data *node, const steep *known)
+/* What is squared in the root of a sum of up to three squares and positive numbers; none where it is something else. */
+static uint32_t squares_of(const hewn_field *field, const hewn_node_data *node, uint32_t parts[3])
 {
-    steep parts[3];
     uint32_t count = 0, left[4] = {node->operand[0]}, open = 1;
     while (open > 0) {
         const hewn_node_data *at = hewn_field_node(field, left[--open]);
@@ -116,15 +155,111 @@ static double root(const hewn_field *field, const hewn_node_data *node, const st
             left[open++] = at->operand[0];
             left[open++] = at->operand[1];
         } else if (at->op == HEWN_OP_SQUARE && count < 3) {
-            parts[count++] = known[at->operand[0]];
+            parts[count++] = at->operand[0];
         } else if (!(at->op == HEWN_OP_CONSTANT && at->parameter[0] >= 0)) {
-            return unary(HEWN_OP_SQRT, &known[node->operand[0]]);
+            return 0;
         }
     }
-    return joint(parts, count);
+    return count;
 }
 
-static double shape(const hewn_node_data *node, const steep *in)
+/* The root of a sum of squares is a length, and no steeper than what is squared is as a vector. */
+static void set_root(steep *out, const hewn_field *field, const hewn_node_data *node, const steep *known)
+{
+    uint32_t squared[3], count = squares_of(field, node, squared);
+    steep parts[3];
+    for (uint32_t k = 0; k < count; k++)
+        parts[k] = known[squared[k]];
+    if (count > 0) {
+        set_joint(out, parts, count);
+    } else {
+        out->bound = unary(HEWN_OP_SQRT, &known[node->operand[0]]);
+        set_round(out);
+    }
+}
+
+/* The operand of a min or max with a number; NULL where it is none of that kind. */
+static const hewn_node_data *clamped(const hewn_field *field, uint32_t id, hewn_op op, double *number)
+{
+    const hewn_node_data *at = hewn_field_node(field, id);
+    for (int k = 0; at->op == op && k < 2; k++) {
+        const hewn_node_data *other = hewn_field_node(field, at->operand[1 - k]);
+        if (other->op == HEWN_OP_CONSTANT) {
+            *number = other->parameter[0];
+            return hewn_field_node(field, at->operand[k]);
+        }
+    }
+    return NULL;
+}
+
+/* Whether `part` is number - a, written as a sum. */
+static bool is_less(const hewn_field *field, const hewn_node_data *part, uint32_t a, double number)
+{
+    for (int k = 0; part->op == HEWN_OP_ADD && k < 2; k++) {
+        const hewn_node_data *turned = hewn_field_node(field, part->operand[k]);
+        const hewn_node_data *other = hewn_field_node(field, part->operand[1 - k]);
+        if (turned->op == HEWN_OP_NEG && turned->operand[0] == a && other->op == HEWN_OP_CONSTANT &&
+            other->parameter[0] == number)
+            return true;
+    }
+    return false;
+}
+
+/* Corners are min(max(a, b), 0) + |max(a, 0), max(b, 0)|, and rounded ones max(min(a, b), s) - |max(s - a, 0), max(s - b,
+ * 0)|: everywhere one of the two terms does not change. */
+static bool is_corner(const hewn_field *field, const hewn_node_data *sum, uint32_t flat_term, uint32_t long_term)
+{
+    bool rounded = sum->op == HEWN_OP_SUB;
+    double number, zero;
+    uint32_t squared[3];
+    const hewn_node_data *term = hewn_field_node(field, long_term);
+    const hewn_node_data *flat = clamped(field, flat_term, rounded ? HEWN_OP_MAX : HEWN_OP_MIN, &number);
+    if (!flat || flat->op != (rounded ? HEWN_OP_MIN : HEWN_OP_MAX) || (!rounded && number != 0) ||
+        term->op != HEWN_OP_SQRT || squares_of(field, term, squared) != 2)
+        return false;
+    for (int k = 0; k < 2; k++) {
+        const hewn_node_data *part = clamped(field, squared[k], HEWN_OP_MAX, &zero);
+        bool found = false;
+        for (int j = 0; part && j < 2; j++)
+            found = found || (rounded ? is_less(field, part, flat->operand[j], number)
+                                      : part == hewn_field_node(field, flat->operand[j]));
+        if (!found || zero != 0)
+            return false;
+    }
+    return squared[0] != squared[1];
+}
+
+static bool either_changes(const hewn_field *field, const hewn_node_data *node)
+{
+    switch (node->op) {
+    case HEWN_OP_MIN:
+    case HEWN_OP_MAX:
+    case HEWN_OP_BLEND_QUADRATIC: /* the gradient of a blend is a mean of its operands' */
+    case HEWN_OP_BLEND_CUBIC:
+    case HEWN_OP_BLEND_CIRCULAR:
+    case HEWN_OP_BLEND_EXPONENTIAL: return true;
+    case HEWN_OP_SUB: return is_corner(field, node, node->operand[0], node->operand[1]);
+    case HEWN_OP_ADD:
+        return is_corner(field, node, node->operand[0], node->operand[1]) ||
+               is_corner(field, node, node->operand[1], node->operand[0]);
+    default: return false;
+    }
+}
+
+static void set_two(steep *out, const hewn_field *field, const hewn_node_data *node, const steep *in)
+{
+    if (either_changes(field, node)) {
+        set_either(out, &in[0], &in[1]);
+        return;
+    }
+    out->bound = binary(node->op, &in[0], &in[1]);
+    if (in[1].bound == 0 || in[0].bound == 0)
+        set_scaled(out, in[1].bound == 0 ? &in[0] : &in[1]);
+    else
+        set_round(out);
+}
+
+static void set_shape(steep *out, const hewn_node_data *node, const steep *in)
 {
     switch (node->op) {
     case HEWN_OP_SPHERE:
@@ -133,14 +268,30 @@ static double shape(const hewn_node_data *node, const steep *in)
     case HEWN_OP_TORUS:
     case HEWN_OP_CYLINDER:
     case HEWN_OP_CAPSULE:
-    case HEWN_OP_CONE: return joint(in, 3);
-    case HEWN_OP_OUTLINE: return joint(in + 1, 2); /* a distance, whatever its chain's values do */
-    case HEWN_OP_PLANE: return times(length(node->parameter), joint(in, 3));
+    case HEWN_OP_CONE: set_joint(out, in, 3); return;
+    case HEWN_OP_OUTLINE: set_joint(out, in + 1, 2); return; /* a distance, whatever its chain's values do */
+    case HEWN_OP_PLANE:
+        set_joint(out, in, 3);
+        out->bound = times(length(node->parameter), out->bound);
+        break;
     case HEWN_OP_AFFINE:
-        return times(fabs(node->parameter[0]), in[0].bound) + times(fabs(node->parameter[1]), in[1].bound) +
-               times(fabs(node->parameter[2]), in[2].bound);
-    default: return INFINITY;
+        out->bound = times(fabs(node->parameter[0]), in[0].bound) + times(fabs(node->parameter[1]), in[1].bound) +
+                     times(fabs(node->parameter[2]), in[2].bound);
+        break;
+    default: out->bound = INFINITY;
     }
+    set_round(out);
+}
+
+static void set_linear(steep *out, const hewn_node_data *node, const steep *in)
+{
+    out->linear = true;
+    for (int j = 0; j < 3; j++)
+        out->row[j] = node->parameter[0] * in[0].row[j] + node->parameter[1] * in[1].row[j] +
+                      node->parameter[2] * in[2].row[j];
+    out->bound = length(out->row) * (1 + 1e-12);
+    for (int i = 0; i < 9; i++)
+        out->form[i / 3][i % 3] = out->row[i / 3] * out->row[i % 3];
 }
 
 static steep find(const hewn_field *field, const hewn_node_data *node, const hewn_box *box, const steep *known)
@@ -151,7 +302,7 @@ static steep find(const hewn_field *field, const hewn_node_data *node, const hew
     if (node->op <= HEWN_OP_Z) {
         int axis = (int)(node->op - HEWN_OP_X);
         out = (steep){.range = {box->lo[axis], box->hi[axis], false}, .bound = 1, .linear = true};
-        out.row[axis] = 1;
+        out.row[axis] = out.form[axis][axis] = 1;
         return out;
     }
     for (uint32_t k = 0; k < operands; k++) {
@@ -159,25 +310,24 @@ static steep find(const hewn_field *field, const hewn_node_data *node, const hew
         ranges[k] = in[k].range;
     }
     out.range = hewn_op_bound(node, ranges);
-    if (operands == 0)
+    if (operands == 0) {
         out.linear = true;
-    else if (node->op == HEWN_OP_SQRT)
-        out.bound = root(field, node, known);
-    else if (operands == 1)
+    } else if (node->op == HEWN_OP_SQRT) {
+        set_root(&out, field, node, known);
+    } else if (operands == 1) {
         out.bound = unary(node->op, &in[0]);
-    else if (operands == 2)
-        out.bound = binary(node->op, &in[0], &in[1]);
-    else
-        out.bound = shape(node, in);
-    if (node->op == HEWN_OP_AFFINE && in[0].linear && in[1].linear && in[2].linear) {
-        out.linear = true;
-        for (int j = 0; j < 3; j++)
-            out.row[j] = node->parameter[0] * in[0].row[j] + node->parameter[1] * in[1].row[j] +
-                         node->parameter[2] * in[2].row[j];
-        out.bound = length(out.row) * (1 + 1e-12);
+        set_scaled(&out, &in[0]);
+    } else if (operands == 2) {
+        set_two(&out, field, node, in);
+    } else if (node->op == HEWN_OP_AFFINE && in[0].linear && in[1].linear && in[2].linear) {
+        set_linear(&out, node, in);
+    } else {
+        set_shape(&out, node, in);
     }
     if (out.range.maybe_nan || isnan(out.bound))
         out.bound = INFINITY;
+    if (out.bound == INFINITY)
+        set_round(&out);
     return out;
 }
 
