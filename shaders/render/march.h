@@ -40,7 +40,9 @@ struct March {
     bool met;
 };
 
-void step_by_spheres(inout March m, vec3 from, vec3 along, float near_enough)
+/* Which of the two it is stands in the code: CPU drivers run both arms of a condition. */
+#ifdef HEWN_BY_SPHERES
+void take_step(inout March m, vec3 from, vec3 along, float near_enough, float end)
 {
     vec3 p = from + m.t * along;
     float value = field_point(p.x, p.y, p.z);
@@ -57,8 +59,8 @@ void step_by_spheres(inout March m, vec3 from, vec3 along, float near_enough)
     m.last = m.relaxation * m.free;
     m.t += m.met ? 0.0 : m.last;
 }
-
-void step_by_intervals(inout March m, vec3 from, vec3 along, float near_enough, float end)
+#else
+void take_step(inout March m, vec3 from, vec3 along, float near_enough, float end)
 {
     float stride = min(m.stride, end - m.t), after = m.t + stride;
     vec2 range = field_interval(side(from.x, along.x, m.t, after), side(from.y, along.y, m.t, after),
@@ -77,6 +79,7 @@ void step_by_intervals(inout March m, vec3 from, vec3 along, float near_enough, 
     m.met = value <= 0.0; /* else nothing is proven of so short a way but that its end is outside */
     m.t = m.met ? m.t : after;
 }
+#endif
 
 /* Where a ray meets the surface; FAR_AWAY: nowhere. */
 float march(vec3 from, vec3 along, float begin, float end, uint most, out bool ran_out)
@@ -91,10 +94,7 @@ float march(vec3 from, vec3 along, float begin, float end, uint most, out bool r
         if (m.t >= end)
             break;
         float near_enough = push.nearness + push.spread * m.t;
-        if (push.steepness > 0.0)
-            step_by_spheres(m, from, along, near_enough);
-        else
-            step_by_intervals(m, from, along, near_enough, end);
+        take_step(m, from, along, near_enough, end);
         if (m.met)
             break;
     }

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "eval/lists.h"
 #include "render/cells.h"
 #include "render/tracer.h"
@@ -68,14 +69,28 @@ static hewn_result fill_cells(device_tracer *tracer, hewn_error *error)
     return result;
 }
 
+/* Whether rays go on by spheres. */
+static bool is_bounded(const device_tracer *tracer)
+{
+    return tracer->steepness > 0 && tracer->steepness <= HEWN_STEEPEST * tracer->slope;
+}
+
 static hewn_result create_program(device_tracer *tracer, hewn_error *error)
 {
+    hewn_text body = {0};
+    hewn_text_append(&body, is_bounded(tracer) ? "#define HEWN_BY_SPHERES\n" : "");
+    hewn_text_append(&body, hewn_text_trace);
+    hewn_result result = hewn_text_status(&body, error);
+    const uint32_t by_interval = is_bounded(tracer) ? 0 : HEWN_FLAVOUR_INTERVAL;
     const hewn_kernel_desc desc = {.name = "trace",
                                    .head = hewn_text_render_head,
-                                   .body = hewn_text_trace,
-                                   .flavours = HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_INTERVAL,
+                                   .body = body.bytes,
+                                   .flavours = HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT | by_interval,
                                    .push_bytes = sizeof(struct hewn_trace_push)};
-    return hewn_code_program(tracer->device, tracer->code, &desc, &tracer->program, error);
+    if (result == HEWN_OK)
+        result = hewn_code_program(tracer->device, tracer->code, &desc, &tracer->program, error);
+    hewn_text_clear(&body);
+    return result;
 }
 
 static hewn_result prepare(device_tracer *tracer, const hewn_field *field, hewn_node root, hewn_error *error)
@@ -114,8 +129,7 @@ static struct hewn_trace_push make_push(const device_tracer *tracer, const hewn_
         push.light[axis] = stage->light[axis];
         farthest = fmax(farthest, fmax(fabs(tracer->box.lo[axis]), fabs(tracer->box.hi[axis])));
     }
-    bool bounded = tracer->steepness > 0 && tracer->steepness <= HEWN_STEEPEST * tracer->slope;
-    push.steepness = bounded ? nextafterf((float)tracer->steepness, INFINITY) : 0;
+    push.steepness = is_bounded(tracer) ? nextafterf((float)tracer->steepness, INFINITY) : 0;
     push.slack = push.steepness * (float)farthest * 0x1p-18F;
     return push;
 }
