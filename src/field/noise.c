@@ -8,6 +8,7 @@
 
 #include "field/internal.h"
 #include "field/interval.h"
+#include "field/operate.h"
 
 /* Lattice cells farther out than this are those at the rim: floats have no fractions there. */
 #define RIM 0x1p24
@@ -186,6 +187,18 @@ double hewn_noise_point(const hewn_node_data *node, const double in[3])
     double out[4];
     hewn_noise_slopes(node, in, out);
     return out[0];
+}
+
+/* Along all three axes at once; the cellular one is the square of a distance of at most 1. */
+double hewn_op_noise_slope(hewn_op op)
+{
+    switch (op) {
+    case HEWN_OP_NOISE_VALUE: return VALUE_SLOPE * sqrt(3) * (1 + 1e-12);
+    case HEWN_OP_NOISE_GRADIENT: return GRADIENT_SLOPE * sqrt(3) * (1 + 1e-12);
+    case HEWN_OP_NOISE_SIMPLEX: return SIMPLEX_SLOPE * sqrt(3) * (1 + 1e-12);
+    case HEWN_OP_NOISE_CELLULAR: return 2;
+    default: return INFINITY;
+    }
 }
 
 /* About the value in the middle, from how steep the noise can be. */

@@ -270,6 +270,13 @@ static void set_shape(steep *out, const hewn_node_data *node, const steep *in)
     case HEWN_OP_CAPSULE:
     case HEWN_OP_CONE: set_joint(out, in, 3); return;
     case HEWN_OP_OUTLINE: set_joint(out, in + 1, 2); return; /* a distance, whatever its chain's values do */
+    case HEWN_OP_NOISE_VALUE:
+    case HEWN_OP_NOISE_GRADIENT:
+    case HEWN_OP_NOISE_SIMPLEX:
+    case HEWN_OP_NOISE_CELLULAR:
+        set_joint(out, in, 3);
+        out->bound = times(hewn_op_noise_slope(node->op), out->bound);
+        break;
     case HEWN_OP_PLANE:
         set_joint(out, in, 3);
         out->bound = times(length(node->parameter), out->bound);
