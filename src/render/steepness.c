@@ -27,30 +27,25 @@ static double length(const double *v)
 /* --- forms ----------------------------------------------------------------------------------------------------------
  */
 
-/* The largest eigenvalue of a form, from above: the power 2^-5 of the trace of its 32nd power. */
+/* The largest eigenvalue of a form, from above: the power 2^-24 of the trace of its power 2^24, where factors that keep
+ * numbers from growing are taken out of each square. */
 static double greatest_eigenvalue(const double form[3][3])
 {
-    double s[9], scale = 0;
-    for (int i = 0; i < 9; i++) {
-        s[i] = form[i / 3][i % 3];
-        scale = fmax(scale, fabs(s[i]));
-    }
-    if (!(scale > 0) || !isfinite(scale))
-        return scale;
+    double s[9], logarithm = 0, weight = 1;
     for (int i = 0; i < 9; i++)
-        s[i] /= scale;
-    double bound = s[0] + s[4] + s[8];
-    for (int power = 0; power < 5; power++) {
-        double t[9];
+        s[i] = form[i / 3][i % 3];
+    for (int power = 0; power < 24; power++, weight *= 0.5) {
+        double t[9], trace = s[0] + s[4] + s[8];
+        if (!(trace > 0) || !isfinite(trace))
+            return trace;
+        logarithm += weight * log(trace);
+        for (int i = 0; i < 9; i++)
+            s[i] /= trace;
         for (int i = 0; i < 9; i++)
             t[i] = s[i / 3 * 3] * s[i % 3] + s[i / 3 * 3 + 1] * s[3 + i % 3] + s[i / 3 * 3 + 2] * s[6 + i % 3];
         memcpy(s, t, sizeof s);
     }
-    double rows = 0; /* no eigenvalue is larger than a row's sum of sizes, which is exact for diagonal forms */
-    for (int i = 0; i < 3; i++)
-        rows = fmax(rows, fabs(form[i][0]) + fabs(form[i][1]) + fabs(form[i][2]));
-    bound = fmin(bound, pow(s[0] + s[4] + s[8], 1.0 / 32));
-    return fmin(scale * bound * (1 + 1e-12), rows);
+    return exp(logarithm + weight * log(s[0] + s[4] + s[8])) * (1 + 1e-12);
 }
 
 /* The form of a gradient of which only the length is known. */
@@ -192,17 +187,12 @@ static const hewn_node_data *clamped(const hewn_field *field, uint32_t id, hewn_
     return NULL;
 }
 
-/* Whether `part` is number - a, written as a sum. */
+/* Whether `part` is number - a. */
 static bool is_less(const hewn_field *field, const hewn_node_data *part, uint32_t a, double number)
 {
-    for (int k = 0; part->op == HEWN_OP_ADD && k < 2; k++) {
-        const hewn_node_data *turned = hewn_field_node(field, part->operand[k]);
-        const hewn_node_data *other = hewn_field_node(field, part->operand[1 - k]);
-        if (turned->op == HEWN_OP_NEG && turned->operand[0] == a && other->op == HEWN_OP_CONSTANT &&
-            other->parameter[0] == number)
-            return true;
-    }
-    return false;
+    const hewn_node_data *from = part->op == HEWN_OP_SUB ? hewn_field_node(field, part->operand[0]) : part;
+    return part->op == HEWN_OP_SUB && part->operand[1] == a && from->op == HEWN_OP_CONSTANT &&
+           from->parameter[0] == number;
 }
 
 /* Corners are min(max(a, b), 0) + |max(a, 0), max(b, 0)|, and rounded ones max(min(a, b), s) - |max(s - a, 0), max(s - b,
