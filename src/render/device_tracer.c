@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "eval/lists.h"
+#include "field/graph.h"
 #include "render/cells.h"
 #include "render/tracer.h"
 
@@ -152,21 +153,58 @@ static hewn_result trace(void *self, const hewn_stage *stage, const hewn_ray *ra
     return HEWN_OK;
 }
 
+/* Whether the host runs an operation in vector code, or as fast as a CPU device in any case. */
+static bool is_plain(hewn_op op)
+{
+    switch (op) {
+    case HEWN_OP_SQRT:
+    case HEWN_OP_CONE:
+    case HEWN_OP_EDGE:
+    case HEWN_OP_OUTLINE:
+    case HEWN_OP_SAMPLED:
+    case HEWN_OP_PAINT: return true;
+    default: break;
+    }
+    bool arithmetic = op == HEWN_OP_CONSTANT || op == HEWN_OP_NEG || op == HEWN_OP_ABS || op == HEWN_OP_SQUARE ||
+                      op == HEWN_OP_ADD || op == HEWN_OP_SUB || op == HEWN_OP_MUL || op == HEWN_OP_MIN ||
+                      op == HEWN_OP_MAX;
+    bool shape = op >= HEWN_OP_AFFINE && op <= HEWN_OP_PLANE, blend = op >= HEWN_OP_BLEND_QUADRATIC;
+    return op <= HEWN_OP_Z || arithmetic || shape || blend;
+}
+
+/* Fields with fewer operations are compiled in no time. */
+enum { LEAST_ON_HOST = 48 };
+
+static hewn_result choose_host(const hewn_device *device, const hewn_field *field, hewn_node root, bool *out,
+                               hewn_error *error)
+{
+    uint32_t *ids;
+    size_t count;
+    HEWN_TRY(hewn_field_live_nodes(field, root, &ids, &count, error));
+    *out = hewn_device_get_info(device)->kind == HEWN_DEVICE_CPU && count >= LEAST_ON_HOST;
+    for (size_t i = 0; i < count && *out; i++)
+        *out = is_plain(hewn_field_node(field, ids[i])->op);
+    hewn_free(ids);
+    return HEWN_OK;
+}
+
 hewn_result hewn_tracer_on_device(hewn_device *device, const hewn_field *field, hewn_node root, const hewn_box *box,
-                                  hewn_tracer *out, bool *listed, hewn_error *error)
+                                  hewn_tracer *out, bool *on_host, hewn_error *error)
 {
     *out = (hewn_tracer){0};
-    *listed = false;
+    HEWN_TRY(choose_host(device, field, root, on_host, error));
+    if (*on_host)
+        return HEWN_OK;
     device_tracer *tracer = hewn_alloc_zero(1, sizeof *tracer);
     if (!tracer)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a renderer");
     *tracer = (device_tracer){.device = device, .box = *box};
     hewn_result result = hewn_code_create(device, field, root, &tracer->code, error);
     if (result == HEWN_OK)
-        *listed = hewn_code_is_listed(tracer->code);
-    if (result == HEWN_OK && !*listed)
+        *on_host = hewn_code_is_listed(tracer->code);
+    if (result == HEWN_OK && !*on_host)
         result = prepare(tracer, field, root, error);
-    if (result != HEWN_OK || *listed)
+    if (result != HEWN_OK || *on_host)
         destroy(tracer);
     else
         *out = (hewn_tracer){.self = tracer, .trace = trace, .destroy = destroy};

@@ -63,11 +63,11 @@ hewn_result hewn_renderer_of_field(hewn_device *device, const hewn_field *field,
     double began = hewn_clock_now();
     HEWN_TRY(create(out, error));
     (*out)->box = *box;
-    bool listed = true;
+    bool on_host = true;
     hewn_result result = HEWN_OK;
     if (device)
-        result = hewn_tracer_on_device(device, field, root, box, &(*out)->tracer, &listed, error);
-    if (result == HEWN_OK && listed)
+        result = hewn_tracer_on_device(device, field, root, box, &(*out)->tracer, &on_host, error);
+    if (result == HEWN_OK && on_host)
         result = hewn_tracer_on_host(field, root, box, &(*out)->tracer, error);
     if (result != HEWN_OK)
         hewn_renderer_destroy(out);
