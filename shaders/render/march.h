@@ -34,30 +34,54 @@ vec2 side(float from, float along, float a, float b)
     return vec2(min(p, q) - error, max(p, q) + error);
 }
 
-/* How a march goes on from t: by a step that is proven to be free, or `met`. */
+/* How a march goes on from t. Of the last step `sure` is known to be free whatever is at t; `free` is how much the sphere
+ * says that it began in, and `lean` how fast values changed along it, over the greatest slope. */
 struct March {
-    float t, stride, last, free, relaxation;
+    float t, stride, sure, free, lean;
     bool met;
 };
 
-/* Which of the two it is stands in the code: CPU drivers run both arms of a condition. */
+/* Which of the two ways it is stands in the code: CPU drivers run both arms of a condition. */
 #ifdef HEWN_BY_SPHERES
+/* Back to where the last sphere ends, or what is on the surface. */
+void step_back(inout March m)
+{
+    m.t += m.sure - m.stride;
+    m.stride = m.sure;
+    m.lean = -1.0;
+}
+
+/* As take_sphere() of the host's tracer. */
 void take_step(inout March m, vec3 from, vec3 along, float near_enough, float end)
 {
     vec3 p = from + m.t * along;
     float value = field_point(p.x, p.y, p.z);
     float radius = (value - push.slack) / push.steepness;
-    if (m.relaxation > 1.0 &&
-        radius + m.free < m.last) { /* the spheres do not touch: back to the end of the last one */
-        m.t += m.free - m.last;
-        m.relaxation = 1.0;
-        m.free = m.last = 0.0;
+    if (m.stride > m.sure && (value <= 0.0 || m.stride > m.free + radius)) {
+        step_back(m);
         return;
     }
     m.met = value <= 0.0; /* and not where it is small: past a sharp edge it may be so without surface */
-    m.free = max(radius, near_enough);
-    m.last = m.relaxation * m.free;
-    m.t += m.met ? 0.0 : m.last;
+    float lean = mix(m.lean, (radius - m.free) / m.stride, 0.3);
+    m.lean = m.stride > 0.0 ? lean : m.lean;
+    m.free = radius > 0.0 && radius < FAR_AWAY ? radius : 0.0;
+    m.sure = max(m.free, near_enough);
+    m.stride = max(2.0 * m.free / (1.0 - min(m.lean, 0.8)), m.sure);
+    m.t += m.met ? 0.0 : m.stride;
+}
+
+/* Passes empty cells; a step that led into one, or past the end, is taken back where it is not sure. */
+bool passes(inout March m, vec3 from, vec3 along, float end)
+{
+    float next = pass_empty(from, along, m.t, end);
+    if (next == m.t && m.t < end)
+        return true;
+    if (m.stride > m.sure) {
+        step_back(m);
+        return false;
+    }
+    m = March(next, 0.0, 0.0, 0.0, -1.0, false);
+    return next < end;
 }
 #else
 void take_step(inout March m, vec3 from, vec3 along, float near_enough, float end)
@@ -79,26 +103,29 @@ void take_step(inout March m, vec3 from, vec3 along, float near_enough, float en
     m.met = value <= 0.0; /* else nothing is proven of so short a way but that its end is outside */
     m.t = m.met ? m.t : after;
 }
+
+bool passes(inout March m, vec3 from, vec3 along, float end)
+{
+    m.t = pass_empty(from, along, m.t, end);
+    return m.t < end;
+}
 #endif
 
 /* Where a ray meets the surface; FAR_AWAY: nowhere. */
 float march(vec3 from, vec3 along, float begin, float end, uint most, out bool ran_out)
 {
-    March m = March(begin, 0.02 * (push.hi[0] - push.lo[0]), 0.0, 0.0, 1.6, false);
-    for (uint i = 0u; i < most; i++) {
-        float next = pass_empty(from, along, m.t, end);
-        if (next > m.t) {
-            m.t = next;
-            m.free = m.last = 0.0;
-        }
-        if (m.t >= end)
-            break;
-        float near_enough = push.nearness + push.spread * m.t;
-        take_step(m, from, along, near_enough, end);
-        if (m.met)
-            break;
+#ifdef HEWN_BY_SPHERES
+    March m = March(begin, 0.0, 0.0, 0.0, -1.0, false);
+#else
+    March m = March(begin, 0.02 * (push.hi[0] - push.lo[0]), FAR_AWAY, 0.0, 0.0, false);
+#endif
+    bool ended = false;
+    for (uint i = 0u; i < most && !m.met && !ended; i++) {
+        if (passes(m, from, along, end))
+            take_step(m, from, along, push.nearness + push.spread * m.t, end);
+        ended = m.t >= end && m.stride <= m.sure;
     }
-    ran_out = !m.met && m.t < end;
+    ran_out = !m.met && !ended;
     return m.met || ran_out ? m.t : FAR_AWAY;
 }
 

@@ -1,6 +1,6 @@
 /* Follows rays to the field's surface, one an invocation. Cells that interval bounds found empty are passed at once.
- * Elsewhere, where the field's slope is bounded, spheres are traced (Hart 1996) with over-relaxation (Keinert and others
- * 2014); where it is not, steps are as long as interval bounds prove free of surface (Mitchell 1990). Either way no
+ * Elsewhere, where the field's slope is bounded, spheres are traced (Hart 1996) with automatic relaxation (Ban and
+ * Valasek 2023); where it is not, steps are as long as interval bounds prove free of surface (Mitchell 1990). Either way no
  * surface is stepped over. Soft shadows are estimated from how near the way to the light passes, openness from values
  * along the normal (Evans 2006). */
 layout(local_size_x = 64) in;

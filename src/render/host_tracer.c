@@ -535,7 +535,7 @@ static void find_openness(crew *c, const float (*p)[3], hewn_met *const *lit, ui
         outside[i] = sqrtf(square);
         const hewn_cell *cell = hewn_octree_find(&c->tracer->octree, points[i]);
         wanted[i] = !(cell->least >= height * c->tracer->slope) && !(outside[i] >= height);
-        values[i] = FAR_AWAY; /* where nothing is that near, whatever the value */
+        values[i] = height * c->tracer->slope; /* where nothing is that near, whatever the value */
     }
     visit_points(c, (const float(*)[3])points, wanted, count * TAPS, take_values, values);
     for (uint32_t i = 0; i < count; i++) {
@@ -543,7 +543,8 @@ static void find_openness(crew *c, const float (*p)[3], hewn_met *const *lit, ui
         for (uint32_t tap = 1; tap <= TAPS; tap++, weight *= 0.7F) {
             uint32_t k = i * TAPS + tap - 1;
             float height = c->stage->reach * (float)(tap * tap) / (TAPS * TAPS);
-            float free = fmaxf(outside[k], values[k] / c->tracer->slope);
+            float there = fmaxf(values[k] / c->tracer->slope, 0);
+            float free = sqrtf(outside[k] * outside[k] + there * there); /* what is in the box is no nearer */
             free = isnan(free) ? height : fminf(fmaxf(free, 0), height);
             taken += weight * (height - free);
             all += weight * height;

@@ -55,7 +55,7 @@ hewn_result hewn_steepness_bound(const hewn_field *field, hewn_node root, const 
                                  hewn_error *error);
 
 /* That bound counts for nothing where it is this many times the slope that is common: intervals then get on faster. */
-#define HEWN_STEEPEST 6.0
+#define HEWN_STEEPEST 8.0
 
 /* The slope that is common where the field is near 0 in a box, 1 where nothing can be said; from a fixed set of points.
  */
