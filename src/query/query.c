@@ -45,7 +45,7 @@ static hewn_result prepare(hewn_query *query, hewn_device *device, const hewn_fi
     measure(query);
     HEWN_TRY(hewn_steepness_bound(field, root, &query->box, &query->steepness, error));
     HEWN_TRY(hewn_steepness_bound(field, root, &query->wide, &query->wide_steepness, error));
-    HEWN_TRY(hewn_octree_create(field, root, &query->box, &query->octree, error));
+    HEWN_TRY(hewn_octree_create(field, root, &query->box, true, &query->octree, error));
     return device ? hewn_query_open_device(query, device, field, root, error) : HEWN_OK;
 }
 

@@ -122,7 +122,7 @@ static void visit_points(crew *c, const float (*p)[3], const uint8_t *wanted, ui
     uint32_t which[HEWN_LANES], left = 0;
     for (uint32_t i = 0; i < count; i++)
         if (!wanted || wanted[i])
-            c->items[left++] = (wanting){hewn_octree_find(&c->tracer->octree, p[i])->owner, i};
+            c->items[left++] = (wanting){hewn_octree_reach(&c->tracer->octree, &c->work, p[i])->owner, i};
     put_together(c, left);
     for (uint32_t first = 0, taken; first < left; first += taken) {
         hewn_lane_points points;
@@ -171,7 +171,7 @@ static bool find_cell(crew *c, walker *w)
     for (uint32_t i = 0; i < 4 * HEWN_SKIP_STEPS && w->t < w->end; i++) {
         float p[3], begin = 0, end = FAR_AWAY;
         place(w->ray, w->t, p);
-        w->cell = hewn_octree_find(octree, p);
+        w->cell = hewn_octree_reach(octree, &c->work, p);
         clip(w->cell->lo, w->cell->hi, w->ray, &begin, &end);
         w->after = (end > w->t ? end : w->t) + 0.5F * octree->margin;
         w->after = w->after < w->end ? w->after : w->end;
@@ -280,7 +280,7 @@ static bool find_cell_of_sphere(crew *c, walker *w)
             continue;
         }
         place(w->ray, w->t, p);
-        w->cell = hewn_octree_find(octree, p);
+        w->cell = hewn_octree_reach(octree, &c->work, p);
         bool empty = w->cell->state == HEWN_CELL_EMPTY, full = w->cell->state == HEWN_CELL_FULL;
         if (!empty && !full)
             return true;
@@ -446,14 +446,14 @@ static void settle_normals(crew *c, const hewn_ray *rays, hewn_met *met, const u
 }
 
 /* Passes cells in which the field is too far above 0 to dim the light; false where the way to it ends. */
-static bool pass_bright(const crew *c, walker *w, float end)
+static bool pass_bright(crew *c, walker *w, float end)
 {
     const hewn_octree *octree = &c->tracer->octree;
     float dimming = c->stage->softness * c->tracer->slope;
     for (uint32_t i = 0; i < 4 * HEWN_SKIP_STEPS && w->t < end; i++) {
         float p[3], begin = 0, out = FAR_AWAY;
         place(w->ray, w->t, p);
-        const hewn_cell *cell = hewn_octree_find(octree, p);
+        const hewn_cell *cell = hewn_octree_reach(octree, &c->work, p);
         clip(cell->lo, cell->hi, w->ray, &begin, &out);
         out = (out > w->t ? out : w->t) + 0.5F * octree->margin;
         if (!(cell->least >= dimming * out))
@@ -533,7 +533,7 @@ static void find_openness(crew *c, const float (*p)[3], hewn_met *const *lit, ui
             square += (at - points[i][axis]) * (at - points[i][axis]);
         }
         outside[i] = sqrtf(square);
-        const hewn_cell *cell = hewn_octree_find(&c->tracer->octree, points[i]);
+        const hewn_cell *cell = hewn_octree_reach(&c->tracer->octree, &c->work, points[i]);
         wanted[i] = !(cell->least >= height * c->tracer->slope) && !(outside[i] >= height);
         values[i] = height * c->tracer->slope; /* where nothing is that near, whatever the value */
     }
@@ -579,7 +579,7 @@ static void trace_pack(crew *c, const hewn_ray *rays, uint32_t count, hewn_met *
         walkers[i] = start(c, &rays[i]);
         place(&rays[i], walkers[i].t, points[i]);
         wanted[i] = walkers[i].t < walkers[i].end &&
-                    hewn_octree_find(&c->tracer->octree, points[i])->state != HEWN_CELL_EMPTY;
+                    hewn_octree_reach(&c->tracer->octree, &c->work, points[i])->state != HEWN_CELL_EMPTY;
     }
     visit_points(c, (const float(*)[3])points, wanted, count, take_values, values);
     for (uint32_t i = 0; i < count; i++) {
@@ -645,7 +645,7 @@ hewn_result hewn_tracer_on_host(const hewn_field *field, hewn_node root, const h
     if (result == HEWN_OK)
         result = hewn_steepness_bound(field, root, box, &steepness, error);
     if (result == HEWN_OK)
-        result = hewn_octree_create(field, root, box, &tracer->octree, error);
+        result = hewn_octree_create(field, root, box, false, &tracer->octree, error);
     tracer->slope = (float)slope;
     for (int axis = 0; axis < 3; axis++)
         far = fmax(far, fmax(fabs(box->lo[axis]), fabs(box->hi[axis])));

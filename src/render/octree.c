@@ -1,12 +1,16 @@
 #include "render/octree.h"
 
 #include <math.h>
+#include <sched.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
 
 /* Cells are halved where tapes are long until they are 2^-6 of the box, and where they are short to 2^-4. */
 enum { LEVELS = 6, LEVELS_SHORT = 4, SHORT = 32, CHILDREN = 8, ACROSS = 1 << LEVELS };
+
+/* The last two levels have most of the cells, and rays see few of them. */
+enum { LEVELS_AT_ONCE = LEVELS - 2 };
 
 static void box_child(const hewn_cell *cell, uint32_t child, float lo[3], float hi[3])
 {
@@ -18,6 +22,9 @@ static void box_child(const hewn_cell *cell, uint32_t child, float lo[3], float 
     }
 }
 
+/* Of a cell's children. */
+enum { NOT_DIVIDED, IN_DIVISION, DIVIDED };
+
 /* The eight cells of one, and the tapes of those that nothing is decided of. */
 static hewn_result divide(const hewn_octree *octree, const hewn_cell *cell, hewn_lane_work *work, hewn_cell *children,
                           hewn_error *error)
@@ -25,7 +32,8 @@ static hewn_result divide(const hewn_octree *octree, const hewn_cell *cell, hewn
     hewn_lane_boxes boxes;
     float lo[HEWN_LANES], hi[HEWN_LANES];
     for (uint32_t i = 0; i < CHILDREN; i++) {
-        children[i] = (hewn_cell){.tape = cell->tape, .owner = cell->owner};
+        children[i].tape = cell->tape;
+        children[i].owner = cell->owner;
         box_child(cell, i, children[i].lo, children[i].hi);
         for (int axis = 0; axis < 3; axis++) {
             boxes.lo[axis][i] = children[i].lo[axis] - octree->margin;
@@ -35,37 +43,45 @@ static hewn_result divide(const hewn_octree *octree, const hewn_cell *cell, hewn
     hewn_lanes_bound(cell->tape, work, &boxes, CHILDREN, lo, hi);
     for (uint32_t i = 0; i < CHILDREN; i++) {
         children[i].state = lo[i] > 0 ? HEWN_CELL_EMPTY : hi[i] < 0 ? HEWN_CELL_FULL : HEWN_CELL_MIXED;
-        /* Behind the surface nothing is asked. */
-        if (lo[i] > -INFINITY && children[i].state != HEWN_CELL_FULL)
-            HEWN_TRY(hewn_lane_tape_cut(cell->tape, work, i, &children[i].own, error));
         children[i].least = lo[i];
+    }
+    uint32_t owners = 0;
+    hewn_result result = HEWN_OK;
+    for (uint32_t i = 0; i < CHILDREN; i++) {
+        if (lo[i] > -INFINITY)
+            result = result == HEWN_OK ? hewn_lane_tape_cut(cell->tape, work, i, &children[i].own, error) : result;
         if (children[i].own) {
             children[i].tape = children[i].own;
             children[i].owner = cell->children + i;
+            owners++;
         }
+        children[i].is_long = hewn_lane_tape_length(children[i].tape) > SHORT;
     }
-    return HEWN_OK;
+    if (owners == CHILDREN && !octree->is_whole) /* nobody goes by its tape any more */
+        hewn_lane_tape_destroy(&octree->cells[children->parent].own);
+    return result;
 }
 
 static bool is_divided(const hewn_cell *cell, uint32_t level)
 {
-    return cell->state == HEWN_CELL_MIXED && level < (hewn_lane_tape_length(cell->tape) > SHORT ? LEVELS : LEVELS_SHORT);
+    return cell->state == HEWN_CELL_MIXED && level < (cell->is_long ? LEVELS : LEVELS_SHORT);
 }
 
-/* Gives places to the children of cells first..end that are divided. */
+/* Gives places to the children of cells first..end that are divided, which of those that are not made yet all may be. */
 static hewn_result make_room(hewn_octree *octree, size_t first, size_t end, uint32_t level, hewn_error *error)
 {
     size_t count = octree->count;
+    bool all = first >= octree->made;
     for (size_t i = first; i < end; i++)
-        count += is_divided(&octree->cells[i], level) ? CHILDREN : 0;
+        count += all || is_divided(&octree->cells[i], level) ? CHILDREN : 0;
     if (count > UINT32_MAX)
         return hewn_fail(error, HEWN_LIMIT, "the field has too many cells");
     HEWN_TRY(hewn_reserve((void **)&octree->cells, &octree->capacity, count, sizeof *octree->cells, error));
     for (size_t i = first; i < end; i++)
-        if (is_divided(&octree->cells[i], level)) {
+        if (all || is_divided(&octree->cells[i], level)) {
             octree->cells[i].children = (uint32_t)octree->count;
             for (uint32_t k = 0; k < CHILDREN; k++)
-                octree->cells[octree->count++] = (hewn_cell){0};
+                octree->cells[octree->count++] = (hewn_cell){.parent = (uint32_t)i};
         }
     return HEWN_OK;
 }
@@ -97,11 +113,12 @@ static hewn_result divide_level(hewn_octree *octree, size_t first, size_t end, h
     return all;
 }
 
-static hewn_result grow(hewn_octree *octree, const hewn_box *box, hewn_error *error)
+static hewn_result grow(hewn_octree *octree, const hewn_box *box, bool whole, hewn_error *error)
 {
     HEWN_TRY(hewn_reserve((void **)&octree->cells, &octree->capacity, 1, sizeof *octree->cells, error));
     octree->cells[0] = (hewn_cell){.tape = octree->whole, .state = HEWN_CELL_MIXED, .least = -INFINITY};
-    octree->count = 1;
+    octree->count = octree->made = 1;
+    octree->is_whole = whole;
     double most = 0, far = 0;
     for (int axis = 0; axis < 3; axis++) {
         octree->cells[0].lo[axis] = (float)box->lo[axis];
@@ -114,9 +131,15 @@ static hewn_result grow(hewn_octree *octree, const hewn_box *box, hewn_error *er
     for (uint32_t level = 0; level < LEVELS; level++) {
         size_t end = octree->count;
         HEWN_TRY(make_room(octree, first, end, level, error));
-        HEWN_TRY(divide_level(octree, first, end, error));
+        if (whole || level < LEVELS_AT_ONCE) {
+            HEWN_TRY(divide_level(octree, first, end, error));
+            octree->made = octree->count;
+        }
         first = end;
     }
+    octree->divided = hewn_alloc_zero(octree->count, sizeof *octree->divided);
+    if (!octree->divided)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the cells of a field");
     return HEWN_OK;
 }
 
@@ -156,12 +179,12 @@ static hewn_result make_lattice(hewn_octree *octree, hewn_error *error)
     return HEWN_OK;
 }
 
-hewn_result hewn_octree_create(const hewn_field *field, hewn_node root, const hewn_box *box, hewn_octree *out,
-                               hewn_error *error)
+hewn_result hewn_octree_create(const hewn_field *field, hewn_node root, const hewn_box *box, bool whole,
+                               hewn_octree *out, hewn_error *error)
 {
     *out = (hewn_octree){0};
     HEWN_TRY(hewn_lane_tape_create(field, root, &out->whole, error));
-    hewn_result result = grow(out, box, error);
+    hewn_result result = grow(out, box, whole, error);
     if (result == HEWN_OK)
         result = make_lattice(out, error);
     if (result != HEWN_OK)
@@ -175,8 +198,25 @@ void hewn_octree_destroy(hewn_octree *octree)
         hewn_lane_tape_destroy(&octree->cells[i].own);
     hewn_free(octree->cells);
     hewn_free(octree->finest);
+    hewn_free(octree->divided);
     hewn_lane_tape_destroy(&octree->whole);
     *octree = (hewn_octree){0};
+}
+
+/* What runs out of memory goes on with the tape of the larger cell, which is as right. */
+static void see_divided(const hewn_octree *octree, hewn_lane_work *work, uint32_t number)
+{
+    atomic_uchar *divided = &octree->divided[number];
+    unsigned char before = NOT_DIVIDED;
+    if (atomic_load_explicit(divided, memory_order_acquire) == DIVIDED)
+        return;
+    if (atomic_compare_exchange_strong(divided, &before, IN_DIVISION)) {
+        const hewn_cell *cell = &octree->cells[number];
+        (void)divide(octree, cell, work, &octree->cells[cell->children], NULL);
+        atomic_store(divided, DIVIDED);
+    }
+    while (atomic_load(divided) != DIVIDED)
+        sched_yield();
 }
 
 const hewn_cell *hewn_octree_find(const hewn_octree *octree, const float p[3])
@@ -187,4 +227,17 @@ const hewn_cell *hewn_octree_find(const hewn_octree *octree, const float p[3])
         at[axis] = place > 0 ? place < ACROSS - 1 ? (uint32_t)place : ACROSS - 1U : 0;
     }
     return &octree->cells[octree->finest[at[0] + ACROSS * (at[1] + (size_t)ACROSS * at[2])]];
+}
+
+const hewn_cell *hewn_octree_reach(const hewn_octree *octree, hewn_lane_work *work, const float p[3])
+{
+    const hewn_cell *cell = hewn_octree_find(octree, p);
+    if (cell < octree->cells + octree->made)
+        return cell;
+    const hewn_cell *parent = &octree->cells[cell->parent];
+    see_divided(octree, work, parent->parent);
+    if (!is_divided(parent, LEVELS - 1))
+        return parent;
+    see_divided(octree, work, cell->parent);
+    return cell;
 }
