@@ -9,12 +9,12 @@ enum { NO_REGISTER = 0xFFFF };
 
 typedef struct cutting {
     const hewn_lane_tape *from;
-    const int32_t *choices; /* the box's column, or NULL */
+    const int32_t *choices;      /* the box's column, or NULL */
     hewn_lane_outline *outlines; /* what those that are needed become; they move together, as steps do */
-    uint32_t *same;         /* the step that has a step's value */
-    uint32_t *place;        /* in the new tape, HEWN_NO_STEP: not needed */
-    uint32_t *held;         /* register */
-    uint16_t *free;         /* those given back */
+    uint32_t *same;              /* the step that has a step's value */
+    uint32_t *place;             /* in the new tape, HEWN_NO_STEP: not needed */
+    uint32_t *held;              /* register */
+    uint16_t *free;              /* those given back */
     uint32_t free_count, registers;
 } cutting;
 

@@ -15,8 +15,8 @@ void hewn_lane_outline_free(hewn_lane_outline *outline);
  * memory. */
 hewn_lane_outline *hewn_lane_outlines_pack(const hewn_lane_outline *outlines, uint32_t count);
 
-/* Room for what all outlines of a tape, or one cut from it, may be cut down to: an outline each, and from the first one's
- * arrays on as many sides as there are and twice as many turns. In one block; NULL when out of memory. */
+/* Room for what all outlines of a tape, or one cut from it, may be cut down to: an outline each, and from the first
+ * one's arrays on as many sides as there are and twice as many turns. In one block; NULL when out of memory. */
 hewn_lane_outline *hewn_lane_outlines_room(const hewn_lane_tape *whole);
 
 /* Distances, below 0 inside, in float; a whole number of blocks of points. */
@@ -30,8 +30,8 @@ void hewn_lane_outline_bound(const hewn_lane_outline *outline, const float *cons
 /* The distance at a point, and the unit vector that it grows along; (0, 0) on the outline's corners. */
 float hewn_lane_outline_gradient(const hewn_lane_outline *outline, float x, float y, float away[2]);
 
-/* What of an outline matters in a finite box of x and y: it gives the same bits there. `out` has room for as many sides as
- * `from`, and for twice as many turns as that and `from`'s; `scratch` for as many numbers as `from` has sides. */
+/* What of an outline matters in a finite box of x and y: it gives the same bits there. `out` has room for as many sides
+ * as `from`, and for twice as many turns as that and `from`'s; `scratch` for as many numbers as `from` has sides. */
 void hewn_lane_outline_pick(const hewn_lane_outline *from, const float lo[2], const float hi[2], double *scratch,
                             hewn_lane_outline *out);
 

@@ -79,7 +79,7 @@ typedef struct hewn_lane_tape {
     hewn_node_data *others;
     uint32_t outline_count, side_count; /* sides of all outlines */
     hewn_lane_outline *outlines;        /* its own, in the order of their steps; NULL: none */
-    hewn_lane_step steps[]; /* the last one is the field */
+    hewn_lane_step steps[];             /* the last one is the field */
 } hewn_lane_tape;
 
 /* The whole field. It reads what it needs, so the field may change or go. HEWN_INVALID_ARGUMENT for a node of no field,
@@ -95,12 +95,12 @@ static inline uint32_t hewn_lane_tape_length(const hewn_lane_tape *tape)
 
 /* What one thread needs to run a tape and all that are cut from it. Zero is the empty one. */
 typedef struct hewn_lane_work {
-    float *values;     /* a row of HEWN_LANES a register and derivative or bound */
-    int32_t *choices;  /* of the last bounds: a row for each step that can be cut */
-    uint32_t *scratch; /* three for each step */
-    uint16_t *held;    /* one for each register */
-    float *places;     /* of the last bounds: four rows for each outline, the lower and upper ends of x and y */
-    double *distances; /* one for each side of an outline */
+    float *values;             /* a row of HEWN_LANES a register and derivative or bound */
+    int32_t *choices;          /* of the last bounds: a row for each step that can be cut */
+    uint32_t *scratch;         /* three for each step */
+    uint16_t *held;            /* one for each register */
+    float *places;             /* of the last bounds: four rows for each outline, the lower and upper ends of x and y */
+    double *distances;         /* one for each side of an outline */
     hewn_lane_outline *picked; /* what a tape's outlines are cut down to, in the same block as their sides */
 } hewn_lane_work;
 

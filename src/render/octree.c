@@ -67,7 +67,8 @@ static bool is_divided(const hewn_cell *cell, uint32_t level)
     return cell->state == HEWN_CELL_MIXED && level < (cell->is_long ? LEVELS : LEVELS_SHORT);
 }
 
-/* Gives places to the children of cells first..end that are divided, which of those that are not made yet all may be. */
+/* Gives places to the children of cells first..end that are divided, which of those that are not made yet all may be.
+ */
 static hewn_result make_room(hewn_octree *octree, size_t first, size_t end, uint32_t level, hewn_error *error)
 {
     size_t count = octree->count;

@@ -17,9 +17,9 @@ typedef struct hewn_cell {
     float lo[3], hi[3];
     uint32_t children; /* the first of eight, x fastest; 0: none */
     hewn_cell_state state;
-    bool is_long;               /* its tape */
-    float least;                /* the field is nowhere below this in the cell and a little beyond */
-    uint32_t owner;             /* the cell that the tape was made for */
+    bool is_long;   /* its tape */
+    float least;    /* the field is nowhere below this in the cell and a little beyond */
+    uint32_t owner; /* the cell that the tape was made for */
     uint32_t parent;
     const hewn_lane_tape *tape; /* enough in the cell and a little beyond: see HEWN_CELL_MARGIN */
     hewn_lane_tape *own;        /* the same where it was made for this cell, else NULL */
@@ -36,8 +36,8 @@ typedef struct hewn_octree {
     bool is_whole;         /* then each cell keeps its tape, else those whose children all have their own lose it */
     size_t made;           /* cells that are there from the start; the others only have places */
     atomic_uchar *divided; /* of each cell, whether it has made its children there */
-    uint32_t *finest; /* the cell of each part of a lattice as fine as the smallest cells are, x fastest */
-    float scale[3];   /* from coordinates to those of the lattice */
+    uint32_t *finest;      /* the cell of each part of a lattice as fine as the smallest cells are, x fastest */
+    float scale[3];        /* from coordinates to those of the lattice */
 } hewn_octree;
 
 /* Where it is not to be `whole`, the smallest cells, which are most of all, are left to hewn_octree_reach().

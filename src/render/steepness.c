@@ -195,8 +195,8 @@ static bool is_less(const hewn_field *field, const hewn_node_data *part, uint32_
            from->parameter[0] == number;
 }
 
-/* Corners are min(max(a, b), 0) + |max(a, 0), max(b, 0)|, and rounded ones max(min(a, b), s) - |max(s - a, 0), max(s - b,
- * 0)|: everywhere one of the two terms does not change. */
+/* Corners are min(max(a, b), 0) + |max(a, 0), max(b, 0)|, and rounded ones max(min(a, b), s) - |max(s - a, 0), max(s -
+ * b, 0)|: everywhere one of the two terms does not change. */
 static bool is_corner(const hewn_field *field, const hewn_node_data *sum, uint32_t flat_term, uint32_t long_term)
 {
     bool rounded = sum->op == HEWN_OP_SUB;
@@ -284,8 +284,8 @@ static void set_linear(steep *out, const hewn_node_data *node, const steep *in)
 {
     out->linear = true;
     for (int j = 0; j < 3; j++)
-        out->row[j] = node->parameter[0] * in[0].row[j] + node->parameter[1] * in[1].row[j] +
-                      node->parameter[2] * in[2].row[j];
+        out->row[j] =
+            node->parameter[0] * in[0].row[j] + node->parameter[1] * in[1].row[j] + node->parameter[2] * in[2].row[j];
     out->bound = length(out->row) * (1 + 1e-12);
     for (int i = 0; i < 9; i++)
         out->form[i / 3][i % 3] = out->row[i / 3] * out->row[i % 3];

@@ -40,8 +40,8 @@ typedef struct hewn_tracer {
     void (*destroy)(void *self);
 } hewn_tracer;
 
-/* `*on_host` says, and `out` is empty then, that the host serves the field better: where the device would walk lists, and
- * where it is a CPU and the host's own code is as fast and needs no compilation. */
+/* `*on_host` says, and `out` is empty then, that the host serves the field better: where the device would walk lists,
+ * and where it is a CPU and the host's own code is as fast and needs no compilation. */
 hewn_result hewn_tracer_on_device(hewn_device *device, const hewn_field *field, hewn_node root, const hewn_box *box,
                                   hewn_tracer *out, bool *on_host, hewn_error *error);
 hewn_result hewn_tracer_on_host(const hewn_field *field, hewn_node root, const hewn_box *box, hewn_tracer *out,
