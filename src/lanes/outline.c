@@ -140,8 +140,8 @@ HEWN_LANE_CLONES static void measure(const hewn_lane_outline *outline, const dou
 void hewn_lane_outline_value(const hewn_lane_outline *outline, const float *x, const float *y, float *out,
                              uint32_t count)
 {
-    double px[HEWN_LANES] = {0}, py[HEWN_LANES] = {0}, least[HEWN_LANES];
-    int64_t odd[HEWN_LANES];
+    double px[HEWN_LANES] = {0}, py[HEWN_LANES] = {0}, least[HEWN_LANES] = {0};
+    int64_t odd[HEWN_LANES] = {0};
     for (uint32_t i = 0; i < count; i++) {
         px[i] = (double)x[i];
         py[i] = (double)y[i];
@@ -157,8 +157,8 @@ void hewn_lane_outline_value(const hewn_lane_outline *outline, const float *x, c
 void hewn_lane_outline_bound(const hewn_lane_outline *outline, const float *const x[2], const float *const y[2],
                              float *lo, float *hi, uint32_t count)
 {
-    double px[HEWN_LANES] = {0}, py[HEWN_LANES] = {0}, least[HEWN_LANES];
-    int64_t odd[HEWN_LANES];
+    double px[HEWN_LANES] = {0}, py[HEWN_LANES] = {0}, least[HEWN_LANES] = {0};
+    int64_t odd[HEWN_LANES] = {0};
     for (uint32_t i = 0; i < count; i++) {
         px[i] = 0.5 * (double)x[0][i] + 0.5 * (double)x[1][i];
         py[i] = 0.5 * (double)y[0][i] + 0.5 * (double)y[1][i];
