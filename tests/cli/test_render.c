@@ -92,6 +92,13 @@ static int open_folder(void **state)
     folder = run_folder_create();
     run_write_file(run_path(folder, "ball.lua"), "bounds(-1.5, -1.5, -1.5, 1.5, 1.5, 1.5)\nreturn sphere(1)\n");
     run_write_file(run_path(folder, "disc.lua"), "bounds(-2, -2, -2, 2, 2, 2)\nreturn circle(1.25)\n");
+    run_write_file(run_path(folder, "heap.lua"),
+                   "local heap = star(9, 0.8, 0.4):extrude(0.5)\n"
+                   "for i = 1, 40 do\n"
+                   "  local ball = sphere(0.12):move(cos(i), 0.9 * sin(3 * i), 0.8 * sin(7 * i))\n"
+                   "  heap = smooth_union(heap, ball, 0.1)\n"
+                   "end\n"
+                   "return heap\n");
     run_write_file(run_path(folder, "half.lua"), "return half_space(0, 0, 1, 0)\n");
     run_write_file(run_path(folder, "nothing.lua"), "bounds(-1, -1, -1, 1, 1, 1)\nreturn x * x + 1\n");
     return 0;
@@ -196,12 +203,12 @@ static void test_light(void **state)
 static void test_the_same_bytes(void **state)
 {
     (void)state;
-    static const char *const devices[] = {"host", "0"};
-    for (int k = 0; k < 2; k++) {
-        RENDER("ball.lua", "one.png", "--size", "120x90", "--device", devices[k]);
+    static const char *const ways[][2] = {{"ball.lua", "host"}, {"ball.lua", "0"}, {"heap.lua", "host"}};
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+        RENDER(ways[k][0], "one.png", "--size", "120x90", "--device", ways[k][1]);
         run_desc desc = {
             .folder = folder,
-            .arguments = {"render", "ball.lua", "-o", "two.png", "-q", "--size", "120x90", "--device", devices[k]},
+            .arguments = {"render", ways[k][0], "-o", "two.png", "-q", "--size", "120x90", "--device", ways[k][1]},
             .changes = {"OMP_NUM_THREADS=1"}};
         run_result result = run_expecting(0, &desc);
         run_result_destroy(&result);
