@@ -1,5 +1,6 @@
 #include "hewn/smooth.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -36,17 +37,46 @@ static hewn_result check_vertex(const hewn_polygons *polygons, const double *fre
     return HEWN_OK;
 }
 
-/* The first vertex, or the first face, that is not as it must be; names it. */
-static hewn_result check_all(const hewn_polygons *polygons, const double *freedom, bool faces, hewn_error *error)
+/* Faces of any number of corners: whether each follows the one before it. */
+static bool faces_follow(const hewn_polygons *polygons)
 {
-    uint64_t count = faces ? polygons->face_count : polygons->vertex_count, first = count;
-#pragma omp parallel for schedule(static) reduction(min : first)
-    for (uint64_t i = 0; i < count; i++)
-        if (i < first && (faces ? check_face(polygons, i, NULL) : check_vertex(polygons, freedom, i, NULL)) != HEWN_OK)
-            first = i;
-    if (first == count)
-        return HEWN_OK;
-    return faces ? check_face(polygons, first, error) : check_vertex(polygons, freedom, first, error);
+    int wrong = 0;
+#pragma omp parallel for schedule(static) reduction(| : wrong)
+    for (uint64_t f = 0; f < polygons->face_count; f++)
+        wrong |= polygons->first[f + 1] < polygons->first[f];
+    return !wrong;
+}
+
+/* Whether everything is as it must be; without a branch, as it nearly always is. */
+static bool all_hold(const hewn_polygons *polygons, const double *freedom)
+{
+    const uint64_t numbers = 3 * polygons->vertex_count, corners = smooth_face_begin(polygons, polygons->face_count);
+    int wrong = corners > INT32_MAX || (polygons->first && !faces_follow(polygons));
+    if (wrong)
+        return false;
+#pragma omp parallel reduction(| : wrong)
+    {
+#pragma omp for schedule(static) nowait
+        for (uint64_t i = 0; i < numbers; i++)
+            wrong |= !(fabs(polygons->positions[i]) <= DBL_MAX);
+#pragma omp for schedule(static) nowait
+        for (uint64_t i = 0; i < corners; i++)
+            wrong |= polygons->corners[i] >= polygons->vertex_count;
+#pragma omp for schedule(static)
+        for (uint64_t v = 0; v < (freedom ? polygons->vertex_count : 0); v++)
+            wrong |= !(freedom[v] >= 0 && freedom[v] <= 1);
+    }
+    return !wrong;
+}
+
+/* The first vertex, or the first face, that is not as it must be; names it. */
+static hewn_result check_each(const hewn_polygons *polygons, const double *freedom, hewn_error *error)
+{
+    for (uint64_t v = 0; v < polygons->vertex_count; v++)
+        HEWN_TRY(check_vertex(polygons, freedom, v, error));
+    for (uint64_t f = 0; f < polygons->face_count; f++)
+        HEWN_TRY(check_face(polygons, f, error));
+    return HEWN_OK;
 }
 
 static hewn_result check_polygons(const hewn_polygons *polygons, const double *freedom, hewn_error *error)
@@ -57,8 +87,7 @@ static hewn_result check_polygons(const hewn_polygons *polygons, const double *f
         return hewn_fail(error, HEWN_LIMIT, "2^31 vertices and more cannot be smoothed");
     if (polygons->face_count > 0 && !polygons->corners)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "faces need corners");
-    HEWN_TRY(check_all(polygons, freedom, false, error));
-    return check_all(polygons, freedom, true, error);
+    return all_hold(polygons, freedom) ? HEWN_OK : check_each(polygons, freedom, error);
 }
 
 /* --- measures ----------------------------------------------------------------------------------------------------- */
