@@ -240,24 +240,41 @@ static hewn_result run_method(smooth_work *work, hewn_error *error)
     }
 }
 
+/* Where a number of `at` is outside the frame. Vertices that have not moved keep their bits. */
+static inline double place_out(const smooth_work *work, const frame *from, size_t v, size_t axis, double *move)
+{
+    const double before = work->polygons->positions[3 * v + axis], at = work->at[3 * v + axis];
+    *move = at - place_in(from, work->polygons->positions, v, axis);
+    return *move == 0 ? before : from->origin[axis] + at * from->scale;
+}
+
+/* The first vertex that would not stay finite, or their count. */
+static uint32_t find_lost(const smooth_work *work, const frame *from)
+{
+    uint32_t first = work->count;
+#pragma omp parallel for schedule(static) reduction(min : first)
+    for (uint32_t v = 0; v < work->count; v++) {
+        double move, wrong = 0;
+        for (size_t axis = 0; axis < 3; axis++)
+            wrong += 0 * place_out(work, from, v, axis, &move);
+        if (wrong != 0 && first > v)
+            first = v;
+    }
+    return first;
+}
+
 typedef struct moves {
     double sum, largest;
-    uint32_t first_lost; /* the first vertex that would not stay finite */
 } moves;
 
-/* Vertices that have not moved keep their bits. */
-static moves bring_block_back(const smooth_work *work, const frame *from, uint32_t begin, uint32_t end)
+static moves bring_block_back(const smooth_work *work, const frame *from, double *positions, uint32_t begin,
+                              uint32_t end)
 {
-    moves made = {0, 0, UINT32_MAX};
+    moves made = {0, 0};
     for (uint32_t v = begin; v < end; v++) {
-        double move[3], *out = work->next + 3 * (size_t)v;
-        for (size_t axis = 0; axis < 3; axis++) {
-            size_t i = 3 * (size_t)v + axis;
-            move[axis] = work->at[i] - place_in(from, work->polygons->positions, v, axis);
-            out[axis] = move[axis] == 0 ? work->polygons->positions[i] : from->origin[axis] + work->at[i] * from->scale;
-            if (!isfinite(out[axis]) && made.first_lost > v)
-                made.first_lost = v;
-        }
+        double move[3];
+        for (size_t axis = 0; axis < 3; axis++)
+            positions[3 * (size_t)v + axis] = place_out(work, from, v, axis, move + axis);
         double length = sqrt(smooth_dot(move, move)) * from->scale;
         made.sum += length;
         made.largest = length > made.largest ? length : made.largest;
@@ -265,23 +282,25 @@ static moves bring_block_back(const smooth_work *work, const frame *from, uint32
     return made;
 }
 
+/* `positions` may be those of the input, and are left alone where one would not be finite. */
 static hewn_result bring_back(const smooth_work *work, const frame *from, double *positions, hewn_error *error)
 {
     hewn_smooth_report *report = work->report;
     moves all[SMOOTH_BLOCKS];
+    const uint32_t lost = find_lost(work, from);
+    if (lost < work->count)
+        return hewn_fail(error, HEWN_LIMIT, "vertex %u would not stay finite", lost);
 #pragma omp parallel for schedule(static)
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
-        all[block] = bring_block_back(work, from, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
-                                      (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
+        all[block] =
+            bring_block_back(work, from, positions, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
+                             (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
     double sum = 0;
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++) {
-        if (all[block].first_lost != UINT32_MAX)
-            return hewn_fail(error, HEWN_LIMIT, "vertex %u would not stay finite", all[block].first_lost);
         sum += all[block].sum;
         report->largest_move = fmax(report->largest_move, all[block].largest);
     }
     report->mean_move = work->count > 0 ? sum / work->count : 0;
-    memcpy(positions, work->next, 3 * (size_t)work->count * sizeof *positions);
     return HEWN_OK;
 }
 
