@@ -2,6 +2,8 @@
 #ifndef HEWN_H
 #define HEWN_H
 
+#include "hewn/atlas.h"
+#include "hewn/atlas_job.h"
 #include "hewn/base.h"
 #include "hewn/check.h"
 #include "hewn/clusters.h"

@@ -20,7 +20,8 @@ typedef struct hewn_command {
 
 extern const hewn_command hewn_command_mesh, hewn_command_info, hewn_command_check, hewn_command_repair,
     hewn_command_convert, hewn_command_smooth, hewn_command_subdivide, hewn_command_simplify, hewn_command_lod,
-    hewn_command_voxelize, hewn_command_render, hewn_command_eval, hewn_command_query, hewn_command_devices;
+    hewn_command_voxelize, hewn_command_render, hewn_command_atlas, hewn_command_eval, hewn_command_query,
+    hewn_command_devices;
 extern const hewn_command *const hewn_commands[];
 extern const size_t hewn_command_count;
 
