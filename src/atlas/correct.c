@@ -7,10 +7,13 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
-enum { FINE = 4, MOST_ROUNDS = 16 };
+enum { FINE = 8, MOST_ROUNDS = 16 };
 
-/* Up to here, in texels, an outline may be off. */
+/* In texels: how far an outline may be off; and how near to the middle of the range nothing shall come that is DEEP from
+ * the outline, lest it be seen where edges are made smooth. */
 #define SLACK 0.08
+#define NEAR 0.04
+#define DEEP 0.75
 
 static double middle_of_three(double a, double b, double c)
 {
@@ -50,12 +53,28 @@ static bool is_coloured(const hewn_drawn *drawn, const square *own)
     return false;
 }
 
-/* How far on the wrong side something is. */
-static double error_of(double shown, double true_distance)
+static bool is_off(double shown, double true_distance)
 {
-    return (shown >= 0) == (true_distance >= 0) ? 0 : fabs(true_distance);
+    double depth = fabs(true_distance);
+    return true_distance >= 0 ? (shown < 0 && depth > SLACK) || (shown < NEAR && depth > DEEP)
+                              : (shown >= 0 && depth > SLACK) || (shown > -NEAR && depth > DEEP);
 }
 
+/* Whether two of the three distances have the plain one's side at all four texels: then they have it between them too,
+ * and so does the middle one. */
+static bool is_sure(const square *own)
+{
+    int sure = 0;
+    for (int k = 0; k < 3; k++) {
+        bool alike = true;
+        for (int i = 0; i < 4; i++)
+            alike = alike && (own->shown[k][i] >= 0) == (own->shown[3][0] >= 0);
+        sure += alike;
+    }
+    return sure >= 2;
+}
+
+/* Only where the middle one and the plain one disagree it matters who is right. */
 static bool is_wrong(const hewn_shape *shape, const hewn_drawn *drawn, const square *own, uint32_t x, uint32_t y)
 {
     double least = INFINITY, first = drawn->distances[own->at[0]];
@@ -65,19 +84,22 @@ static bool is_wrong(const hewn_shape *shape, const hewn_drawn *drawn, const squ
         alike = alike && (drawn->distances[own->at[i]] >= 0) == (first >= 0);
     }
     bool far = alike && least > 0.75; /* no point of a square is farther from its corners */
+    if (alike && is_sure(own))
+        return false;
     for (int i = 0; i < FINE * FINE; i++) {
         double u = (i % FINE + 0.5) / FINE, v = (i / FINE + 0.5) / FINE;
-        double shown =
-            middle_of_three(between(own->shown[0], u, v), between(own->shown[1], u, v), between(own->shown[2], u, v));
-        if (far) {
-            if ((shown >= 0) != (first >= 0))
-                return true;
+        double shown = middle_of_three(between(own->shown[0], u, v), between(own->shown[1], u, v),
+                                       between(own->shown[2], u, v));
+        double plain = between(own->shown[3], u, v);
+        if ((shown >= 0) == (plain >= 0) && (fabs(shown) >= NEAR || fabs(plain) < 0.5))
             continue;
-        }
+        if (far && is_off(shown, first))
+            return true;
+        if (far)
+            continue;
         const double p[2] = {x + 0.5 + u, drawn->height - y - 0.5 - v};
         double true_distance = hewn_shape_distance(shape, p, fabs(first) + 1.5);
-        double error = error_of(shown, true_distance);
-        if (error > SLACK && error > error_of(between(own->shown[3], u, v), true_distance))
+        if (is_off(shown, true_distance))
             return true;
     }
     return false;
