@@ -9,8 +9,8 @@
 
 enum { FINE = 8, MOST_ROUNDS = 16 };
 
-/* In texels: how far an outline may be off; and how near to the middle of the range nothing shall come that is DEEP from
- * the outline, lest it be seen where edges are made smooth. */
+/* In texels: how far an outline may be off; and how near to the middle of the range nothing shall come that is DEEP
+ * from the outline, lest it be seen where edges are made smooth. */
 #define SLACK 0.08
 #define NEAR 0.04
 #define DEEP 0.75
@@ -88,8 +88,8 @@ static bool is_wrong(const hewn_shape *shape, const hewn_drawn *drawn, const squ
         return false;
     for (int i = 0; i < FINE * FINE; i++) {
         double u = (i % FINE + 0.5) / FINE, v = (i / FINE + 0.5) / FINE;
-        double shown = middle_of_three(between(own->shown[0], u, v), between(own->shown[1], u, v),
-                                       between(own->shown[2], u, v));
+        double shown =
+            middle_of_three(between(own->shown[0], u, v), between(own->shown[1], u, v), between(own->shown[2], u, v));
         double plain = between(own->shown[3], u, v);
         if ((shown >= 0) == (plain >= 0) && (fabs(shown) >= NEAR || fabs(plain) < 0.5))
             continue;

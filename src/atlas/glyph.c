@@ -33,7 +33,7 @@ static void draw_row(const hewn_shape *shape, hewn_atlas_type type, hewn_drawn *
             if (x == 0)
                 first[k] = known[k];
         }
-        double distance = near[3].edge ? hewn_near_distance(&near[3], p) : -INFINITY;
+        double distance = hewn_shape_holds(shape, p) ? near[3].distance : -near[3].distance;
         drawn->distances[at] = distance;
         drawn->texels[at][3] = hewn_texel_of(distance, drawn->range);
         for (int k = 0; k < 3; k++) {

@@ -23,6 +23,17 @@ void hewn_edge_prepare(hewn_edge *edge)
             for (unsigned i = 0; i < degree; i++)
                 edge->itself[k + i] += edge->powers[k][axis] * edge->slope[i][axis];
     }
+    const double rise[3] = {edge->slope[0][1], edge->slope[1][1], edge->slope[2][1]};
+    edge->turns = degree > 1 ? hewn_sign_changes(rise, degree - 1, edge->turn + 1) : 0;
+    edge->turn[0] = 0;
+    edge->turn[edge->turns + 1] = 1;
+    for (unsigned i = 0; i <= edge->turns + 1; i++) {
+        double at[2];
+        hewn_bezier_point(&edge->curve, edge->turn[i], at);
+        edge->height[i] = at[1];
+    }
+    edge->height[0] = edge->curve.p[0][1]; /* to the bit what the neighbours have */
+    edge->height[edge->turns + 1] = edge->curve.p[degree][1];
 }
 
 /* --- one edge ------------------------------------------------------------------------------------------------------
@@ -114,11 +125,6 @@ static double side_of(const hewn_near *near, const double p[2])
     return along[0] * (p[1] - at[1]) - along[1] * (p[0] - at[0]);
 }
 
-double hewn_near_distance(const hewn_near *near, const double p[2])
-{
-    return side_of(near, p) >= 0 ? near->distance : -near->distance;
-}
-
 double hewn_near_straight(const hewn_near *near, const double p[2])
 {
     double along[2], side = side_of(near, p);
@@ -132,6 +138,36 @@ double hewn_near_straight(const hewn_near *near, const double p[2])
     return side >= 0 ? near->distance : -near->distance;
 }
 
+/* How often an edge winds around a point: its crossings of the level ray to the left. */
+static int winding(const hewn_edge *edge, const double p[2])
+{
+    int sum = 0;
+    if (p[0] < edge->lo[0] || p[1] < edge->lo[1] || p[1] > edge->hi[1])
+        return 0;
+    for (unsigned i = 0; i <= edge->turns; i++) {
+        bool before = edge->height[i] > p[1], rises = edge->height[i + 1] > p[1];
+        if (before == rises)
+            continue;
+        double x = edge->lo[0];
+        if (p[0] < edge->hi[0]) {
+            const double c[4] = {edge->powers[0][1] - p[1], edge->powers[1][1], edge->powers[2][1], edge->powers[3][1]};
+            double t = hewn_root_between(c, edge->curve.degree, edge->turn[i], edge->turn[i + 1], rises), at[2];
+            hewn_bezier_point(&edge->curve, t, at);
+            x = at[0];
+        }
+        sum += x < p[0] ? (rises ? 1 : -1) : 0;
+    }
+    return sum;
+}
+
+bool hewn_shape_holds(const hewn_shape *shape, const double p[2])
+{
+    int sum = 0;
+    for (size_t i = 0; i < shape->count; i++)
+        sum += winding(&shape->edges[i], p);
+    return sum != 0;
+}
+
 double hewn_shape_distance(const hewn_shape *shape, const double p[2], double most)
 {
     hewn_near near = {.distance = most, .skew = INFINITY};
@@ -140,5 +176,5 @@ double hewn_shape_distance(const hewn_shape *shape, const double p[2], double mo
             hewn_near own = nearest_on(&shape->edges[i], p);
             consider(&near, &own);
         }
-    return near.edge ? hewn_near_distance(&near, p) : -most;
+    return hewn_shape_holds(shape, p) ? near.distance : -near.distance;
 }

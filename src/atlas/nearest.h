@@ -15,6 +15,9 @@ typedef struct hewn_edge {
     double slope[3][2];
     double itself[6];  /* curve times derivative, whose sum with -p times derivative is 0 where p is nearest */
     double ends[2][2]; /* unit directions */
+    unsigned turns;    /* how often it turns up or down between its ends, where, and how high it is there: turn 0 and
+                          turn `turns` + 1 are its ends */
+    double turn[4], height[4];
 } hewn_edge;
 
 /* Edges have the inside on their left. */
@@ -39,13 +42,13 @@ void hewn_edge_prepare(hewn_edge *edge);
  * known already not to be exceeded (or infinity), and their edges are NULL. */
 void hewn_shape_nearest(const hewn_shape *shape, const double p[2], hewn_near near[4]);
 
-/* The distance, above 0 inside. */
-double hewn_near_distance(const hewn_near *near, const double p[2]);
+/* Whether a point is inside: whether edges wind around it, whatever is near. */
+bool hewn_shape_holds(const hewn_shape *shape, const double p[2]);
 
-/* The same to the edge continued straight beyond its ends. */
+/* The distance to the edge continued straight beyond its ends, above 0 on its left. */
 double hewn_near_straight(const hewn_near *near, const double p[2]);
 
-/* The distance to all of a shape, which is not more than `most`. */
+/* The distance to all of a shape, which is not more than `most`; above 0 inside. */
 double hewn_shape_distance(const hewn_shape *shape, const double p[2], double most);
 
 #endif

@@ -119,10 +119,13 @@ void hewn_bezier_bound(const hewn_bezier *curve, double lo[2], double hi[2])
     hewn_bezier_powers(curve, c);
     for (int axis = 0; axis < 2; axis++) {
         const double slope[3] = {c[1][axis], 2 * c[2][axis], 3 * c[3][axis]};
-        double places[4] = {0, 1};
-        unsigned count = 2 + (curve->degree > 1 ? hewn_sign_changes(slope, curve->degree - 1, places + 2) : 0);
+        double places[2], at[2];
+        unsigned count = curve->degree > 1 ? hewn_sign_changes(slope, curve->degree - 1, places) : 0;
+        for (unsigned end = 0; end <= curve->degree; end += curve->degree) { /* to the bit */
+            lo[axis] = fmin(lo[axis], curve->p[end][axis]);
+            hi[axis] = fmax(hi[axis], curve->p[end][axis]);
+        }
         for (unsigned i = 0; i < count; i++) {
-            double at[2];
             hewn_bezier_point(curve, places[i], at);
             lo[axis] = fmin(lo[axis], at[axis]);
             hi[axis] = fmax(hi[axis], at[axis]);
@@ -149,9 +152,8 @@ static double value(const double *c, unsigned degree, double t)
     return sum;
 }
 
-/* Where a polynomial that is monotone from a to b is 0; its sign is another at a than at b. Newton's steps, halves
- * where they lead out. */
-static double solve(const double *c, unsigned degree, double a, double b, bool rises)
+/* Newton's steps, halves where they lead out. */
+double hewn_root_between(const double *c, unsigned degree, double a, double b, bool rises)
 {
     double t = 0.5 * (a + b), slope[5];
     for (unsigned k = 0; k < degree; k++)
@@ -183,7 +185,7 @@ unsigned hewn_sign_changes(const double *c, unsigned degree, double *out)
     for (unsigned i = 0; i <= turns; i++) {
         bool after = value(c, degree, places[i + 1]) > 0;
         if (before != after)
-            out[count++] = solve(c, degree, places[i], places[i + 1], after);
+            out[count++] = hewn_root_between(c, degree, places[i], places[i + 1], after);
         before = after;
     }
     return count;

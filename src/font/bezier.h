@@ -31,4 +31,8 @@ double hewn_bezier_reach(const hewn_bezier *curve);
  * derivative, where it is monotone. `out` has room for `degree`. */
 unsigned hewn_sign_changes(const double *c, unsigned degree, double *out);
 
+/* The place between a and b where such a sum is 0; it is monotone there, and rises or falls from one sign to the other.
+ */
+double hewn_root_between(const double *c, unsigned degree, double a, double b, bool rises);
+
 #endif
