@@ -14,7 +14,7 @@ typedef struct hewn_atlas_job_desc {
     uint32_t face;               /* of a collection */
     const char *output;          /* a PNG file; "-" is standard output */
     const char *json;            /* or NULL; "-" is standard output */
-    const char *const *charsets; /* each "ascii", "latin1", "all", or a file that describes a set (docs/text.md) */
+    const char *const *charsets; /* each "ascii", "latin1", "all", or a file that describes a set (docs/atlas.md) */
     size_t charset_count;
     const char *const *texts; /* each UTF-8 whose characters belong to the set, or "@" and the name of a file of it */
     size_t text_count;        /* where both counts are 0 the set is "ascii" */

@@ -183,15 +183,15 @@ const hewn_command hewn_command_atlas = {
     .name = "atlas",
     .summary = "draw the letters of a font as distances into one image",
     .usage = "FONT -o FILE.png [--json FILE.json] [OPTION]...",
-    .about = "Makes a glyph atlas: the letters of a font (.ttf, .otf, .ttc, .woff) side by side\n"
-             "in one image, each texel the distance to the outline, from which a shader draws\n"
-             "them sharp at any size. Of three distances in red, green and blue (msdf) the\n"
-             "middle one is taken; where it is above one half there is ink.\n",
+    .about = "Makes a glyph atlas: the letters of a font (.ttf, .otf, .ttc, .woff) beside one\n"
+             "another in an image, each texel the distance to the outline. A shader draws them\n"
+             "sharp at any size: of three distances in red, green and blue (msdf) it takes the\n"
+             "middle one, and where that is above one half there is ink.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"
              "  hewn atlas DejaVuSans.ttf -o sans.png --json sans.json\n"
-             "  hewn atlas DejaVuSans.ttf -o sans.png --json sans.json --type mtsdf --size 48 \\\n"
-             "    --range 6 --charset latin1 --chars \"€–„“\"\n",
+             "  hewn atlas DejaVuSans.ttf -o sans.png --json sans.json --type mtsdf \\\n"
+             "    --size 48 --range 6 --charset latin1 --chars €\n",
     .run = run,
 };
