@@ -19,7 +19,8 @@ typedef struct hewn_atlas_job_desc {
     const char *const *texts; /* each UTF-8 whose characters belong to the set, or "@" and the name of a file of it */
     size_t text_count;        /* where both counts are 0 the set is "ascii" */
     bool y_down;              /* the JSON's y counts from the top, downward */
-    hewn_atlas_desc atlas;    /* its characters are set by the job */
+    hewn_atlas_desc atlas;    /* its characters are set by the job; the last stage of its progress is "write", before
+                                 which no file is there */
 } hewn_atlas_job_desc;
 
 /* What a job did. Leave it with hewn_atlas_report_destroy(). */

@@ -59,6 +59,10 @@ int hewn_finish_output(int code);
 /* From now on the first Ctrl-C (or SIGTERM, SIGHUP) asks for the end, and the second one ends the process. */
 void hewn_signals_catch(void);
 
+/* From now on, until this is taken back, such a signal ends the process right away: nothing has been written that would
+ * have to be cleaned up. Not in a stage of progress that is called "write". */
+void hewn_signals_end_at_once(bool may);
+
 /* Whether the end was asked for. */
 bool hewn_signals_cancelled(void);
 

@@ -14,7 +14,7 @@
 #include "base/json.h"
 #include "pipeline/domain.h"
 
-enum { BATCH = 1 << 16, PIECE = 1 << 12, MOST_SIDE = 1 << 16 };
+enum { BATCH = 1 << 14, PIECE = 1 << 10, MOST_SIDE = 1 << 16 };
 
 typedef struct eval_request {
     hewn_scene_arguments scene;
@@ -195,15 +195,6 @@ static hewn_result eval_lines(const eval_request *request, const hewn_field *fie
     return result;
 }
 
-static hewn_result eval_file(const eval_request *request, const hewn_field *field, hewn_rows *rows, hewn_error *error)
-{
-    hewn_number_lines *lines;
-    HEWN_TRY(hewn_number_lines_open(request->points, 3, "a point is three numbers, x y z", &lines, error));
-    hewn_result result = eval_lines(request, field, lines, rows, error);
-    hewn_number_lines_close(&lines);
-    return result;
-}
-
 /* --- grids ----------------------------------------------------------------------------------------------------------
  */
 
@@ -229,10 +220,13 @@ static hewn_result choose_box(const eval_request *request, const hewn_scene *sce
     return HEWN_OK;
 }
 
-static void print_plane(const eval_request *request, const hewn_picture *picture, hewn_rows *rows)
+static hewn_result print_plane(const eval_request *request, const hewn_picture *picture, hewn_rows *rows,
+                               hewn_error *error)
 {
     bool colour = picture->kind == HEWN_PICTURE_COLOUR;
-    for (uint32_t y = picture->height; y-- > 0;) /* a picture has the highest row first */
+    for (uint32_t y = picture->height; y-- > 0;) { /* a picture has the highest row first */
+        if (hewn_signals_cancelled())
+            return hewn_fail(error, HEWN_CANCELLED, "cancelled during evaluate");
         for (uint32_t x = 0; x < picture->width; x++) {
             size_t at = (size_t)y * picture->width + x;
             if (request->inside)
@@ -241,6 +235,21 @@ static void print_plane(const eval_request *request, const hewn_picture *picture
                 hewn_rows_number(rows, (double)picture->values[at], true);
             hewn_rows_end(rows);
         }
+        HEWN_TRY(hewn_rows_flush(rows, error));
+    }
+    return HEWN_OK;
+}
+
+/* Progress of one of many planes as a part of the whole. */
+typedef struct plane_progress {
+    const hewn_progress *whole;
+    uint32_t plane, planes;
+} plane_progress;
+
+static bool report_plane(void *user, const char *stage, double fraction)
+{
+    const plane_progress *own = user;
+    return !own->whole->report || own->whole->report(own->whole->user, stage, (own->plane + fraction) / own->planes);
 }
 
 static hewn_result eval_grid(const eval_request *request, const hewn_field *field, const hewn_progress *progress,
@@ -248,14 +257,15 @@ static hewn_result eval_grid(const eval_request *request, const hewn_field *fiel
 {
     uint32_t planes = request->grid[2] ? request->grid[2] : 1;
     hewn_plane_desc desc = {.width = request->grid[0], .height = request->grid[1], .values = !request->inside};
-    desc.progress = planes == 1 ? progress : NULL;
+    plane_progress part = {.whole = progress, .planes = planes};
+    const hewn_progress parts = {report_plane, &part};
+    desc.progress = &parts;
     memcpy(desc.lo, report->box.lo, sizeof desc.lo);
     memcpy(desc.hi, report->box.hi, sizeof desc.hi);
     for (uint32_t k = 0; k < planes; k++) {
         hewn_picture picture;
         hewn_plane_stats stats;
-        if (planes > 1 && progress->report && !progress->report(progress->user, "evaluate", (double)k / planes))
-            return hewn_fail(error, HEWN_CANCELLED, "cancelled during evaluate");
+        part.plane = k;
         double side = report->box.hi[2] - report->box.lo[2], began = hewn_clock_now();
         desc.z = request->grid[2] ? report->box.lo[2] + side * (k + 0.5) / planes : report->box.lo[2];
         HEWN_TRY(hewn_render_plane(field, hewn_field_root(field), &desc, &picture, &stats, error));
@@ -264,9 +274,9 @@ static hewn_result eval_grid(const eval_request *request, const hewn_field *fiel
         report->plane.operations_a_pixel += stats.operations_a_pixel / planes;
         report->plane.bounds_a_pixel += stats.bounds_a_pixel / planes;
         report->plane.filled += stats.filled / planes;
-        print_plane(request, &picture, rows);
+        hewn_result result = print_plane(request, &picture, rows, error);
         hewn_picture_destroy(&picture);
-        HEWN_TRY(hewn_rows_flush(rows, error));
+        HEWN_TRY(result);
     }
     return HEWN_OK;
 }
@@ -325,17 +335,24 @@ static hewn_result evaluate(const eval_request *request, const hewn_scene *scene
     const hewn_field *field = hewn_scene_field(scene);
     grid_report report = {0};
     hewn_rows rows;
+    hewn_number_lines *lines = NULL;
+    hewn_signals_end_at_once(true);
     if (request->grid[0])
         HEWN_TRY(choose_box(request, scene, &report.box, error));
-    HEWN_TRY(hewn_rows_open(request->output, &rows, error));
-    hewn_result result = HEWN_OK;
-    if (request->grid[0])
-        result = eval_grid(request, field, progress, &rows, &report, error);
-    else if (request->points)
-        result = eval_file(request, field, &rows, error);
-    else
-        result = eval_given(request, field, &rows, error);
-    result = hewn_rows_close(&rows, result, error);
+    if (request->points)
+        HEWN_TRY(hewn_number_lines_open(request->points, 3, "a point is three numbers, x y z", &lines, error));
+    hewn_signals_end_at_once(false);
+    hewn_result result = hewn_rows_open(request->output, &rows, error);
+    if (result == HEWN_OK) {
+        if (request->grid[0])
+            result = eval_grid(request, field, progress, &rows, &report, error);
+        else if (request->points)
+            result = eval_lines(request, field, lines, &rows, error);
+        else
+            result = eval_given(request, field, &rows, error);
+        result = hewn_rows_close(&rows, result, error);
+    }
+    hewn_number_lines_close(&lines);
     if (result == HEWN_OK && request->report)
         result = write_report(request, &report, error);
     hewn_progress_end();

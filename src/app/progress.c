@@ -11,6 +11,8 @@ static volatile sig_atomic_t cancelled;
 /* Reading a scene cannot be interrupted (it may wait for a pipe, or run the scene's own endless loop), but nothing
  * needs to be cleaned up then: the process may end right away. */
 static volatile sig_atomic_t may_end_at_once;
+/* The same all the time, but in the stage "write". */
+static volatile sig_atomic_t writes_last;
 
 static const int caught[] = {SIGINT, SIGTERM, SIGHUP};
 enum { CAUGHT = sizeof caught / sizeof *caught };
@@ -39,6 +41,16 @@ void hewn_signals_catch(void)
             sigaction(caught[i], &action, NULL);
 }
 
+void hewn_signals_end_at_once(bool may)
+{
+    writes_last = may;
+    may_end_at_once = may;
+    if (cancelled && may) { /* before it was allowed */
+        fputs("hewn: cancelled\n", stderr);
+        _exit(hewn_exit_code(HEWN_CANCELLED));
+    }
+}
+
 bool hewn_signals_cancelled(void)
 {
     return cancelled != 0;
@@ -55,7 +67,7 @@ static struct {
 static bool report(void *user, const char *stage, double fraction)
 {
     (void)user;
-    may_end_at_once = strcmp(stage, "load") == 0;
+    may_end_at_once = writes_last ? strcmp(stage, "write") != 0 : strcmp(stage, "load") == 0;
     if (cancelled)
         return false;
     double now = hewn_clock_now();
@@ -80,7 +92,7 @@ hewn_progress hewn_progress_begin(bool quiet)
 
 void hewn_progress_end(void)
 {
-    may_end_at_once = 0;
+    may_end_at_once = writes_last;
     if (line.shown)
         fprintf(stderr, "\r\033[K");
     line.shown = false;

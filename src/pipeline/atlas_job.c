@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/progress.h"
 #include "io/png_write.h"
 #include "pipeline/atlas_json.h"
 #include "pipeline/paths.h"
@@ -69,6 +70,7 @@ static hewn_result gather(const hewn_atlas_job_desc *desc, const hewn_font *font
 static hewn_result write_files(const hewn_atlas_job_desc *desc, const hewn_atlas *atlas, hewn_output *outputs[2],
                                hewn_error *error)
 {
+    HEWN_TRY(hewn_progress_report(desc->atlas.progress, "write", 0, error));
     HEWN_TRY(hewn_output_create(desc->output, &outputs[0], error));
     if (desc->json)
         HEWN_TRY(hewn_output_create(desc->json, &outputs[1], error));

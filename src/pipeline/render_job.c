@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/progress.h"
 #include "pipeline/domain.h"
 #include "pipeline/opening.h"
 #include "pipeline/paths.h"
@@ -191,6 +192,7 @@ static hewn_result run(render_job *job, hewn_error *error)
         snprintf(job->report->where, sizeof job->report->where, "%s", hewn_device_get_info(job->opening.device)->name);
     if (!job->opened || job->report->stats.on_host)
         snprintf(job->report->where, sizeof job->report->where, "the host");
+    HEWN_TRY(hewn_progress_report(desc->progress, "write", 0, error));
     return hewn_picture_write(&job->picture, desc->output, error);
 }
 
