@@ -56,7 +56,7 @@ static hewn_result check(render_job *job, hewn_error *error)
 
 static hewn_result load_mesh(render_job *job, hewn_error *error)
 {
-    const hewn_read_desc read = {.format = job->mesh, .progress = job->desc->progress};
+    const hewn_read_desc read = {.format = job->mesh, .progress = job->desc->progress, .base_colors = true};
     hewn_model model = {0};
     HEWN_TRY(hewn_model_read(job->desc->scene.path, &read, &model, error));
     if (!job->desc->up && model.up_known)
