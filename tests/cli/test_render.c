@@ -155,6 +155,84 @@ static void test_a_mesh(void **state)
     free(b.rows);
 }
 
+/* --- colours -------------------------------------------------------------------------------------------------------
+ */
+
+/* A mesh of a painted scene looks like the scene, whatever the format and the space its colours are in. */
+static void test_colours_of_meshes(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"paint.glb", "paint.ply", "paint.obj", "paint.off"};
+    static const char *const look[] = {"--size",      "80x60", "--camera", "2,-6,3:0,0,0:0,0,1/25",
+                                       "--no-ground", "--up",  "+Z",       NULL};
+    run_write_file(run_path(folder, "paint.lua"),
+                   "bounds(-1.6, -1.6, -1.6, 1.6, 1.6, 1.6)\n"
+                   "return sphere(1):move(-0.5, 0, 0):color(0.9, 0.2, 0.1):smooth_union(\n"
+                   "  sphere(0.8):move(0.7, 0, 0):color(0.1, 0.3, 0.9), 0.3)\n");
+    render(0, "paint.lua", "scene.png", look);
+    png scene = read_png(run_path(folder, "scene.png"));
+    for (int i = 0; i < 4; i++) {
+        run_desc desc = {.folder = folder, .arguments = {"mesh", "paint.lua", "-o", names[i], "--res", "64", "-q"}};
+        run_result result = run_expecting(0, &desc);
+        run_result_destroy(&result);
+        render(0, names[i], "mesh.png", look);
+        png mesh = read_png(run_path(folder, "mesh.png"));
+        double sum = 0, red = 0, blue = 0;
+        for (uint32_t y = 0; y < 60; y++)
+            for (uint32_t x = 0; x < 80; x++) {
+                for (uint32_t k = 0; k < 3; k++)
+                    sum += fabs((double)value_of(&scene, x, y, k) - value_of(&mesh, x, y, k)) / (3 * 80 * 60);
+                int warm = (int)value_of(&mesh, x, y, 0) - (int)value_of(&mesh, x, y, 2);
+                red += warm > 80;
+                blue += warm < -80;
+            }
+        if (sum > 2 || red < 300 || blue < 100)
+            fail_msg("%s: off by %.2f on average; %g red pixels, %g blue ones", names[i], sum, red, blue);
+        free(mesh.rows);
+    }
+    free(scene.rows);
+}
+
+/* Two squares side by side, red on the left and green on the right. */
+static void check_squares(const char *file)
+{
+    RENDER(file, "squares.png", "--size", "60x40", "--view", "front", "--no-ground");
+    png picture = read_png(run_path(folder, "squares.png"));
+    for (uint32_t x = 20; x < 40; x += 13) {
+        unsigned red = value_of(&picture, x, 20, 0), green = value_of(&picture, x, 20, 1);
+        unsigned blue = value_of(&picture, x, 20, 2);
+        if (x < 30 ? red < 100 || green > 40 || blue > 40 : green < 60 || red > 40 || blue > 40)
+            fail_msg("%s: %u %u %u at %u", file, red, green, blue, x);
+    }
+    free(picture.rows);
+}
+
+static void test_colours_of_faces(void **state)
+{
+    (void)state;
+    run_write_file(run_path(folder, "two.off"), "OFF\n6 2 0\n-1 0 -1\n0 0 -1\n0 0 1\n-1 0 1\n1 0 -1\n1 0 1\n"
+                                                "4 0 1 2 3 200 0 0\n4 1 4 5 2 0 150 0\n");
+    check_squares("two.off");
+    static const char data[] =
+        "AACAvwAAgL8AAAAAAAAAAAAAgL8AAAAAAAAAAAAAgD8AAAAAAACAvwAAgL8AAAAAAAAAAAAAgD8AAAAAAACAvwAA"
+        "gD8AAAAAAAAAAAAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAAAAAAAAgL8AAAAAAACAPwAAgD8AAAAA"
+        "AAAAAAAAgD8AAAAA";
+    char text[3000];
+    snprintf(
+        text, sizeof text,
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":144,\"uri\":\"data:application/octet-stream;"
+        "base64,%s\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":144}],\"accessors\":["
+        "{\"bufferView\":0,\"componentType\":5126,\"count\":6,\"type\":\"VEC3\",\"min\":[-1,-1,0],\"max\":[0,1,0]},"
+        "{\"bufferView\":0,\"byteOffset\":72,\"componentType\":5126,\"count\":6,\"type\":\"VEC3\",\"min\":[0,-1,0],"
+        "\"max\":[1,1,0]}],\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0.3,0,1]}},"
+        "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.6,0,0,1]}}],\"meshes\":[{\"primitives\":["
+        "{\"attributes\":{\"POSITION\":0},\"material\":1},{\"attributes\":{\"POSITION\":1},\"material\":0}]}],"
+        "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0}",
+        data);
+    run_write_file(run_path(folder, "two.gltf"), text);
+    check_squares("two.gltf");
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -200,9 +278,15 @@ static void test_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_ball),         cmocka_unit_test(test_a_disc), cmocka_unit_test(test_light),
-        cmocka_unit_test(test_the_same_bytes), cmocka_unit_test(test_a_mesh), cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_a_ball),
+        cmocka_unit_test(test_a_disc),
+        cmocka_unit_test(test_light),
+        cmocka_unit_test(test_the_same_bytes),
+        cmocka_unit_test(test_a_mesh),
+        cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_colours_of_meshes),
+        cmocka_unit_test(test_colours_of_faces),
     };
     return cmocka_run_group_tests(tests, open_folder, close_folder);
 }
