@@ -10,6 +10,7 @@
 #include "hewn/clusters_job.h"
 #include "hewn/device.h"
 #include "hewn/distance.h"
+#include "hewn/evaluate.h"
 #include "hewn/extract.h"
 #include "hewn/field.h"
 #include "hewn/file_job.h"

@@ -65,6 +65,7 @@ static const header headers[] = {
     {"mesh", "mesh"},
     {"repair", "mesh"},
     {"mesh_views", "mesh"},
+    {"evaluate", "eval"},
     {"extract", "iso"},
     {"scene", "scene"},
     {"io", "io"},
