@@ -60,8 +60,8 @@ int hewn_finish_output(int code);
 void hewn_signals_catch(void);
 
 /* From now on, until this is taken back, such a signal ends the process right away: nothing has been written that would
- * have to be cleaned up. Not in a stage of progress that is called "write". */
-void hewn_signals_end_at_once(bool may);
+ * have to be cleaned up, but for the file `remove` (or NULL). Not in a stage of progress that is called "write". */
+void hewn_signals_end_at_once(bool may, const char *remove);
 
 /* Whether the end was asked for. */
 bool hewn_signals_cancelled(void);

@@ -162,7 +162,7 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
     hewn_result result = read_request(arguments, &request, &error);
     if (result == HEWN_OK) {
         hewn_signals_catch();
-        hewn_signals_end_at_once(true);
+        hewn_signals_end_at_once(true, NULL);
         hewn_progress progress = hewn_progress_begin(request.quiet);
         request.desc.atlas.progress = &progress;
         result = hewn_atlas_file(&request.desc, &report, &error);

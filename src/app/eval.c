@@ -422,16 +422,17 @@ static hewn_result evaluate(const eval_request *request, const hewn_scene *scene
     hewn_rows rows;
     hewn_number_lines *lines = NULL;
     computing on;
-    hewn_signals_end_at_once(true);
+    hewn_signals_end_at_once(true, NULL);
     if (request->grid[0])
         HEWN_TRY(choose_box(request, scene, &report.box, error));
     if (request->points)
         HEWN_TRY(hewn_number_lines_open(request->points, 3, "a point is three numbers, x y z", &lines, error));
     hewn_result result = begin_computing(request, field, &on, error);
-    hewn_signals_end_at_once(false);
+    hewn_signals_end_at_once(false, NULL);
     if (result == HEWN_OK)
         result = hewn_rows_open(request->output, &rows, error);
     if (result == HEWN_OK) {
+        hewn_signals_end_at_once(true, hewn_output_temporary(rows.output));
         if (on.evaluator && request->grid[0])
             result = eval_grid_on_device(request, &on, progress, &rows, &report, error);
         else if (request->grid[0])
@@ -441,6 +442,7 @@ static hewn_result evaluate(const eval_request *request, const hewn_scene *scene
         else
             result = eval_given(request, &on, &rows, error);
         result = end_computing(&on, result, error);
+        hewn_signals_end_at_once(false, NULL);
         result = hewn_rows_close(&rows, result, error);
     } else {
         end_computing(&on, result, error);

@@ -13,19 +13,28 @@ static volatile sig_atomic_t cancelled;
 static volatile sig_atomic_t may_end_at_once;
 /* The same all the time, but in the stage "write". */
 static volatile sig_atomic_t writes_last;
+/* A file that is not complete and has to go then; or "". Changed only while nothing may end at once. */
+static char doomed[4096];
 
 static const int caught[] = {SIGINT, SIGTERM, SIGHUP};
 enum { CAUGHT = sizeof caught / sizeof *caught };
+
+/* With what a handler of signals may call. */
+static void end_at_once(void)
+{
+    static const char message[] = "hewn: cancelled\n";
+    if (doomed[0])
+        unlink(doomed);
+    (void)!write(STDERR_FILENO, message, sizeof message - 1);
+    _exit(hewn_exit_code(HEWN_CANCELLED));
+}
 
 static void on_signal(int number)
 {
     (void)number;
     cancelled = 1;
-    if (may_end_at_once) {
-        static const char message[] = "hewn: cancelled\n";
-        (void)!write(STDERR_FILENO, message, sizeof message - 1);
-        _exit(hewn_exit_code(HEWN_CANCELLED));
-    }
+    if (may_end_at_once)
+        end_at_once();
     for (int i = 0; i < CAUGHT; ++i)
         signal(caught[i], SIG_DFL);
 }
@@ -41,14 +50,15 @@ void hewn_signals_catch(void)
             sigaction(caught[i], &action, NULL);
 }
 
-void hewn_signals_end_at_once(bool may)
+void hewn_signals_end_at_once(bool may, const char *remove)
 {
-    writes_last = may;
-    may_end_at_once = may;
-    if (cancelled && may) { /* before it was allowed */
-        fputs("hewn: cancelled\n", stderr);
-        _exit(hewn_exit_code(HEWN_CANCELLED));
-    }
+    may_end_at_once = 0; /* while the name changes */
+    bool fits = !remove || strlen(remove) < sizeof doomed;
+    snprintf(doomed, sizeof doomed, "%s", remove && fits ? remove : "");
+    writes_last = may && fits;
+    may_end_at_once = writes_last;
+    if (cancelled && may_end_at_once) /* before it was allowed */
+        end_at_once();
 }
 
 bool hewn_signals_cancelled(void)

@@ -191,7 +191,7 @@ static hewn_result ask_all(const query_request *request, hewn_query *query, hewn
 /* Everything that takes its time and writes nothing is done: the file is opened. */
 static hewn_result open_rows(const query_request *request, hewn_rows *rows, hewn_error *error)
 {
-    hewn_signals_end_at_once(false);
+    hewn_signals_end_at_once(false, NULL);
     return hewn_rows_open(request->output, rows, error);
 }
 
@@ -215,7 +215,9 @@ static hewn_result ask_lines(const query_request *request, const hewn_scene *sce
     if (result == HEWN_OK)
         result = open_rows(request, &rows, error);
     if (result == HEWN_OK) {
+        hewn_signals_end_at_once(true, hewn_output_temporary(rows.output));
         result = ask_all(request, query, lines, &rows, error);
+        hewn_signals_end_at_once(false, NULL);
         if (result == HEWN_OK && device && hewn_device_message_count(device) > 0)
             result = hewn_fail(error, HEWN_DEVICE_LOST, "the validation layer gave messages");
         result = hewn_rows_close(&rows, result, error);
@@ -277,7 +279,7 @@ static hewn_result answer(query_request *request, const hewn_scene *scene, hewn_
 {
     HEWN_TRY(hewn_output_check(request->output ? request->output : "-", error));
     hewn_signals_catch();
-    hewn_signals_end_at_once(true);
+    hewn_signals_end_at_once(true, NULL);
     hewn_progress progress = hewn_progress_begin(request->quiet);
     request->desc.progress = &progress;
     hewn_result result = request->other ? ask_clearance(request, scene, error) : ask_lines(request, scene, error);

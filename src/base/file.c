@@ -261,6 +261,11 @@ hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t len
     return HEWN_OK;
 }
 
+const char *hewn_output_temporary(const hewn_output *output)
+{
+    return output->temporary;
+}
+
 hewn_result hewn_output_settle(hewn_output *output, hewn_error *error)
 {
     if (output->status != HEWN_OK)
