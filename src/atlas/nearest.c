@@ -23,7 +23,7 @@ void hewn_edge_prepare(hewn_edge *edge)
             for (unsigned i = 0; i < degree; i++)
                 edge->itself[k + i] += edge->powers[k][axis] * edge->slope[i][axis];
     }
-    const double rise[3] = {edge->slope[0][1], edge->slope[1][1], edge->slope[2][1]};
+    const double rise[6] = {edge->slope[0][1], edge->slope[1][1], edge->slope[2][1]};
     edge->turns = degree > 1 ? hewn_sign_changes(rise, degree - 1, edge->turn + 1) : 0;
     edge->turn[0] = 0;
     edge->turn[edge->turns + 1] = 1;

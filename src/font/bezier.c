@@ -118,7 +118,7 @@ void hewn_bezier_bound(const hewn_bezier *curve, double lo[2], double hi[2])
     double c[4][2];
     hewn_bezier_powers(curve, c);
     for (int axis = 0; axis < 2; axis++) {
-        const double slope[3] = {c[1][axis], 2 * c[2][axis], 3 * c[3][axis]};
+        const double slope[6] = {c[1][axis], 2 * c[2][axis], 3 * c[3][axis]};
         double places[2], at[2];
         unsigned count = curve->degree > 1 ? hewn_sign_changes(slope, curve->degree - 1, places) : 0;
         for (unsigned end = 0; end <= curve->degree; end += curve->degree) { /* to the bit */

@@ -320,11 +320,12 @@ hewn_result hewn_glyph_outline_resolve(hewn_glyph_outline *outline, double grid,
         if (result == HEWN_OK && sides.count > MOST_SIDES)
             result = hewn_fail(error, HEWN_LIMIT, "the outline is too involved");
     }
-    if (result == HEWN_OK)
+    bool any = all.items != NULL; /* else there is nothing, which is what is left of it */
+    if (result == HEWN_OK && any)
         result = hewn_grid_nonzero(&sides, MOST_SIDES, error);
     if (result == HEWN_OK && sides.count > 1)
         qsort(sides.items, sides.count, sizeof *sides.items, by_start);
-    if (result == HEWN_OK)
+    if (result == HEWN_OK && any)
         result = follow(outline, sides.items, sides.count, &all, grid, off, &out, error);
     hewn_grid_sides_clear(&sides);
     hewn_free(all.items);
