@@ -19,7 +19,7 @@ hewn_result hewn_charset_add_named(hewn_charset *set, const char *name, const he
 hewn_result hewn_charset_add_text(hewn_charset *set, const char *text, hewn_error *error);
 
 /* What a description of a set names, as msdf-atlas-gen takes them: numbers (decimal, or hexadecimal with 0x), single
- * characters in '…' and strings in "…", both with \\ before what would end them, and ranges of two of these in
+ * characters in '…' and strings in "…", both with \ before what would end them, and ranges of two of these in
  * [ , ]; separated by commas or blanks. HEWN_BAD_INPUT with the line. */
 hewn_result hewn_charset_add_description(hewn_charset *set, const char *text, hewn_error *error);
 

@@ -182,11 +182,27 @@ static void check_borders(const hewn_glyph_outline *raw, const hewn_glyph_outlin
     }
 }
 
+/* How many ends of curves lie on the raw curves to the last digits, and not only on the grid. */
+static size_t count_exact(const hewn_glyph_outline *raw, const hewn_glyph_outline *resolved)
+{
+    hewn_edge edges[64];
+    const hewn_shape shape = {edges, raw->count};
+    size_t exact = 0;
+    for (size_t i = 0; i < raw->count; i++) {
+        edges[i] = (hewn_edge){.curve = raw->curves[i], .colour = HEWN_WHITE};
+        hewn_edge_prepare(&edges[i]);
+    }
+    for (size_t i = 0; i < resolved->count; i++)
+        exact += fabs(hewn_shape_distance(&shape, resolved->curves[i].p[0], 1e9)) < 1e-9 * UNITS;
+    return exact;
+}
+
 static void overlaps(void **state)
 {
     (void)state;
     uint64_t random = 4;
     int rounds = getenv("HEWN_LONG") ? 1000 : 40, near = 0;
+    size_t exact = 0, ends = 0;
     for (int round = 0; round < rounds; round++) {
         hewn_glyph_outline raw, resolved = {0};
         hewn_shape shape;
@@ -199,6 +215,8 @@ static void overlaps(void **state)
             fail_msg("%s", error.message);
         check_contours(&resolved);
         check_borders(&raw, &resolved);
+        exact += count_exact(&raw, &resolved);
+        ends += resolved.count;
         assert_int_equal(hewn_shape_create(&resolved, 1, (const double[2]){0, 0}, 0.14, &shape, NULL), HEWN_OK);
         for (int i = 0; i < 200; i++) {
             const double p[2] = {(1.4 * atlas_share(&random) - 0.2) * UNITS,
@@ -216,6 +234,8 @@ static void overlaps(void **state)
         hewn_glyph_outline_clear(&resolved);
     }
     assert_true(near < 20 * rounds);
+    if (10 * exact < 9 * ends) /* the others are where curves hardly cross */
+        fail_msg("only %zu of %zu ends are where curves meet", exact, ends);
 }
 
 /* Neighbours at a corner share exactly one colour, and each colour is on each contour. */
