@@ -5,8 +5,8 @@
 #include "base/text.h"
 #include "hewn/atlas.h"
 
-/* Writes JSON in the layout of msdf-atlas-gen (docs/atlas.md); with `y_down` y counts from the image's top and below the
- * baseline. */
+/* Writes JSON in the layout of msdf-atlas-gen (docs/atlas.md); with `y_down` y counts from the image's top and below
+ * the baseline. */
 void hewn_atlas_write_json(const hewn_atlas *atlas, bool y_down, hewn_text *text);
 
 #endif
