@@ -132,7 +132,8 @@ static void fill_plane(int runs)
 
 static void render_scene(const char *path, uint32_t width, uint32_t height, int runs)
 {
-    hewn_render_job_desc desc = {.scene = {.path = path, .reader = hewn_scene_reader_standard()}, .output = "/dev/null"};
+    hewn_render_job_desc desc = {.scene = {.path = path, .reader = hewn_scene_reader_standard()},
+                                 .output = "/dev/null"};
     hewn_render_report report = {0};
     double first = 0, first_spent = 0, best = INFINITY, spent = INFINITY;
     desc.render.width = width;
