@@ -14,6 +14,7 @@ static hewn_format_read_parts reader_of(hewn_mesh_format format)
 {
     switch (format) {
     case HEWN_MESH_PLY: return hewn_ply_read_parts;
+    case HEWN_MESH_STL: return hewn_stl_read_parts;
     default: return NULL;
     }
 }
@@ -21,6 +22,11 @@ static hewn_format_read_parts reader_of(hewn_mesh_format format)
 bool hewn_mesh_format_has_parts(hewn_mesh_format format)
 {
     return reader_of(format) != NULL;
+}
+
+bool hewn_mesh_format_welds(hewn_mesh_format format)
+{
+    return format == HEWN_MESH_STL;
 }
 
 /* A mapped file, whose pages are let go whenever the reader tells how far it is. */

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "io/parts.h"
 #include "outcore/outcore.h"
+#include "outcore/facets.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
 
@@ -22,6 +23,7 @@ typedef struct outcore_job {
     hewn_file_report *report;
     hewn_outcore_budget budget;
     hewn_store store;
+    hewn_facets facets; /* on the way there, where a format shares no vertices */
     uint64_t pages; /* bytes of the store's */
 } outcore_job;
 
@@ -62,7 +64,8 @@ static void begin_store(outcore_job *job)
 static hewn_result take(void *user, hewn_model *part, hewn_error *error)
 {
     outcore_job *job = user;
-    return hewn_store_add(&job->store, part, error);
+    return hewn_mesh_format_welds(job->report->from) ? hewn_facets_add(&job->facets, part, error)
+                                                     : hewn_store_add(&job->store, part, error);
 }
 
 static uint64_t count_triangles(const hewn_model *model)
@@ -104,7 +107,11 @@ static hewn_result read_parts(outcore_job *job, hewn_error *error)
                          ".obj files that are not compressed, and not standard input, can be read in parts",
                          (unsigned long long)job->budget.left);
     begin_store(job);
+    hewn_facets_begin(desc->output, &job->facets);
     HEWN_TRY(hewn_model_read_parts(desc->input, &read, &taker, &about, error));
+    HEWN_TRY(hewn_facets_weld(&job->facets, job->budget.left - job->pages, &job->store, error));
+    hewn_facets_free(&job->facets);
+    malloc_trim(0);
     job->store.schema.unit = about.unit;
     job->store.schema.up = about.up;
     job->store.schema.up_known = about.up_known;
@@ -158,6 +165,7 @@ hewn_result hewn_outcore_step(const hewn_file_job_desc *desc, hewn_file_report *
     *done = false;
     hewn_result result = run(&job, stages, out, done, error);
     hewn_store_free(&job.store);
+    hewn_facets_free(&job.facets);
     malloc_trim(0);
     if (result != HEWN_OK)
         hewn_model_destroy(out);
