@@ -13,6 +13,7 @@
 static hewn_format_read_parts reader_of(hewn_mesh_format format)
 {
     switch (format) {
+    case HEWN_MESH_OBJ: return hewn_obj_read_parts;
     case HEWN_MESH_PLY: return hewn_ply_read_parts;
     case HEWN_MESH_STL: return hewn_stl_read_parts;
     default: return NULL;

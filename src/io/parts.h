@@ -9,6 +9,8 @@
 typedef struct hewn_part_taker {
     hewn_result (*take)(void *user, hewn_model *part, hewn_error *error);
     void *user;
+    uint64_t memory; /* bytes of a file's texture coordinates and normals that a reader may keep for faces to come */
+    bool no_uvs, no_normals; /* values of these channels are not looked at, and may be zero */
 } hewn_part_taker;
 
 /* Whether files of a format can be read in parts. */
@@ -30,6 +32,8 @@ typedef hewn_result (*hewn_format_read_parts)(const hewn_source *source, const h
                                               hewn_model *about, hewn_error *error);
 hewn_result hewn_stl_read_parts(const hewn_source *source, const hewn_part_taker *taker, hewn_model *about,
                                 hewn_error *error); /* HEWN_LIMIT for text */
+hewn_result hewn_obj_read_parts(const hewn_source *source, const hewn_part_taker *taker, hewn_model *about,
+                                hewn_error *error); /* HEWN_LIMIT for faces that name values which come after them */
 hewn_result hewn_ply_read_parts(const hewn_source *source, const hewn_part_taker *taker, hewn_model *about,
                                 hewn_error *error);
 
