@@ -10,9 +10,9 @@
 #include "simplify/channels.h"
 #include "simplify/desc.h"
 
-/* A pass leaves no less than this share: what a region can tell of itself is not worth more. How full memory shall be
+/* How full memory shall be
  * when passes end. The share of the error that is left that a pass may take. */
-static const double least_share = 0.25, fullness = 0.85, error_share = 0.4;
+static const double least_share = 0.51, fullness = 0.85, error_share = 0.4;
 
 /* A pass that leaves more than this share has done next to nothing; where only as few are left as may be, the second. */
 static const double idle_share = 0.995, idle_share_of_errors = 0.9;
