@@ -72,6 +72,12 @@ static void add_distance(outcore_work *work, double high, double low)
     }
 }
 
+/* What is left of the error that is allowed; 0: none is given. */
+static double error_left(const outcore_work *work)
+{
+    return work->allowed > 0 ? work->allowed - work->distances : 0;
+}
+
 /* How many triangles a pass shall leave: of what does not fit in the end either, half of the work in the first, so that
  * what lies between regions can do its part in the second. */
 static uint64_t choose_aim(const outcore_work *work, bool *strictly)
@@ -96,7 +102,7 @@ static hewn_result run_pass(outcore_work *work, hewn_error *error)
                       .shift = shifts[work->more->passes % 3],
                       .capacity = work->capacity,
                       .list_memory = (size_t)(work->memory / 2),
-                      .error = error_share * (work->allowed - work->distances),
+                      .error = error_share * error_left(work),
                       .began = work->done,
                       .span = 0.75 * (1 - work->done),
                       .progress = work->desc->progress};
@@ -153,7 +159,7 @@ static hewn_result finish_in_memory(outcore_work *work, hewn_model *model, const
     desc.progress = desc.progress && desc.progress->report ? &progress : NULL;
     desc.faces = work->target;
     desc.ratio = desc.relative_error = 0;
-    desc.error = work->allowed - work->distances;
+    desc.error = error_left(work);
     if (work->more->passes > 0) {
         desc.frozen = frozen;
         desc.lock_boundary = desc.lock_labels = false;

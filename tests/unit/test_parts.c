@@ -1,4 +1,5 @@
 /* Mesh files that are read in parts: put together, these are what the reader of the whole file makes. */
+#include "base/text.h"
 #include "io/parts.h"
 #include "io_support.h"
 
@@ -170,8 +171,10 @@ static void test_obj_of_every_kind(void **state)
             hewn_text_print(&text, "g part %d\ns %d\n", i % 3000, i % 2000 == 5);
         if (i == 15000)
             hewn_text_append(&text, "usemtl gold\n");
-        if (i >= 3)
-            hewn_text_print(&text, i % 2 ? "f -1 -2 \\\n -3\n" : "f %d %d %d %d\n", i + 1, i, i - 1, i == 40 ? 20000 : i - 2);
+        if (i >= 3 && i % 2)
+            hewn_text_append(&text, "f -1 -2 \\\n -3\n");
+        else if (i >= 3)
+            hewn_text_print(&text, "f %d %d %d %d\n", i + 1, i, i - 1, i == 40 ? 20000 : i - 2);
     }
     assert_int_equal(hewn_text_status(&text, NULL), HEWN_OK);
     write_file(path, text.bytes, text.length);
@@ -221,7 +224,7 @@ static void test_bad_files(void **state)
         {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
                   "end_header\n1 2 x\n", HEWN_BAD_INPUT},
         {"a.obj", "v 0 0 0\nf 1 2 3\n", HEWN_BAD_INPUT},
-        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/2 3/1\nvt 1 1\n", HEWN_LIMIT},
+        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/3 3/1\nvt 1 1\n", HEWN_LIMIT},
         {"a.obj", "v 0 0 nan\n", HEWN_BAD_INPUT},
         {"a.stl", "solid x\nendsolid x\n", HEWN_LIMIT},
         {"b.stl", "this is neither text of this format nor long enough", HEWN_BAD_INPUT},
@@ -246,6 +249,31 @@ static void test_bad_files(void **state)
         assert_int_equal(hewn_model_read_parts(path, &(hewn_read_desc){0}, &taker, &about, &error),
                          i == 7 ? HEWN_LIMIT : HEWN_BAD_INPUT); /* it is not there */
     }
+    rmdir(folder);
+}
+
+/* Texture coordinates that come long after the faces that name them cannot be put together with these in parts. */
+static void test_values_that_come_later(void **state)
+{
+    (void)state;
+    char folder[64], path[128];
+    hewn_text text = {0};
+    hewn_error error = {0};
+    whole_model whole = {0};
+    hewn_model about;
+    const hewn_part_taker taker = {.take = take, .user = &whole, .memory = UINT64_MAX};
+    make_folder(folder);
+    snprintf(path, sizeof path, "%s/a.obj", folder);
+    hewn_text_append(&text, "vt 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/2 3/1\n");
+    for (int i = 0; i < 20000; i++)
+        hewn_text_append(&text, "v 1 2 3\n");
+    hewn_text_append(&text, "vt 1 1\n");
+    write_file(path, text.bytes, text.length);
+    assert_int_equal(hewn_model_read_parts(path, &(hewn_read_desc){0}, &taker, &about, &error), HEWN_LIMIT);
+    assert_int_equal(error.line, 5);
+    hewn_model_destroy(&whole.model);
+    hewn_text_clear(&text);
+    unlink(path);
     rmdir(folder);
 }
 
@@ -275,7 +303,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ply_and_obj), cmocka_unit_test(test_obj_of_every_kind), cmocka_unit_test(test_stl),
-        cmocka_unit_test(test_bad_files),   cmocka_unit_test(test_memory_for_values),
+        cmocka_unit_test(test_bad_files),   cmocka_unit_test(test_values_that_come_later),
+        cmocka_unit_test(test_memory_for_values),
     };
     return cmocka_run_group_tests_name("parts", tests, NULL, NULL);
 }
