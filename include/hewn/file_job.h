@@ -47,12 +47,12 @@ typedef struct hewn_file_job_desc {
     const hewn_file_smooth *smooth;       /* after that; NULL: no smoothing */
     const hewn_simplify_desc *simplify;   /* after that, lengths in the input's unit; its labels, frozen and progress
                                              are not looked at. NULL: no simplification */
-    /* Bytes that the whole process may take at most, as the system counts what is resident, pages of files included; 0: no
-     * limit. Goes with simplification alone. What does not fit then is done in parts, with temporary files beside the
-     * output (docs/memory.md); where it fits the result is the same as without a limit. */
+    /* Bytes that the whole process may take at most, as the system counts what is resident, pages of files included; 0:
+     * no limit. Goes with simplification alone. What does not fit then is done in parts, with temporary files beside
+     * the output (docs/memory.md); where it fits the result is the same as without a limit. */
     uint64_t max_memory;
-    bool check;                           /* examine what will be written, */
-    bool skip_self_intersections;         /* but for these */
+    bool check;                    /* examine what will be written, */
+    bool skip_self_intersections;  /* but for these */
     double began;                  /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
     const hewn_progress *progress; /* or NULL; its stages have the names of the report's */
 } hewn_file_job_desc;

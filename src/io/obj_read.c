@@ -62,8 +62,8 @@ typedef struct obj_reader {
     obj_values uvs, normals;
     obj_range range; /* of vertices */
     obj_labels labels[LABEL_COUNT];
-    uint64_t vertices_before;        /* that were handed out in parts */
-    const hewn_part_taker *taker;    /* of parts; NULL: the file is read as a whole */
+    uint64_t vertices_before;                                /* that were handed out in parts */
+    const hewn_part_taker *taker;                            /* of parts; NULL: the file is read as a whole */
     bool has_colors, has_uvs, has_normals, has[LABEL_COUNT]; /* of parts: what the file has anywhere */
     hewn_model *about;
 } obj_reader;
@@ -595,10 +595,10 @@ static hewn_result hand_out_vertices(obj_reader *reader, hewn_error *error)
 {
     static const hewn_attribute_info info = {"color", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3};
     hewn_model *model = &reader->builder.model, part = {.vertex_count = model->vertex_count};
-    hewn_channel *channel;
+    hewn_channel *channel = NULL;
     part.positions = model->positions;
     hewn_result result = reader->has_colors ? hewn_model_add_channel(&part, &info, &channel, error) : HEWN_OK;
-    if (result == HEWN_OK && reader->color_count > 0)
+    if (result == HEWN_OK && channel && reader->color_count > 0)
         memcpy(channel->values, reader->colors, reader->color_count * 3 * sizeof(float));
     if (result == HEWN_OK)
         result = reader->taker->take(reader->taker->user, &part, error);

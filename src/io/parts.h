@@ -23,8 +23,8 @@ bool hewn_mesh_format_has_parts(hewn_mesh_format format);
 hewn_result hewn_model_read_parts(const char *path, const hewn_read_desc *desc, const hewn_part_taker *taker,
                                   hewn_model *about, hewn_error *error);
 
-/* Whether vertices of such a file that have equal positions are the same: each part then has faces with vertices of their
- * own, three each, from 0 on. */
+/* Whether vertices of such a file that have equal positions are the same: each part then has faces with vertices of
+ * their own, three each, from 0 on. */
 bool hewn_mesh_format_welds(hewn_mesh_format format);
 
 /* The formats' own. */

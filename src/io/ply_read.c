@@ -530,8 +530,7 @@ static hewn_result take_some(ply_reader *reader, const hewn_ply_element *some, c
     return HEWN_OK;
 }
 
-static hewn_result read_in_parts(ply_reader *reader, const hewn_part_taker *taker, hewn_model *about,
-                                 hewn_error *error)
+static hewn_result read_in_parts(ply_reader *reader, const hewn_part_taker *taker, hewn_model *about, hewn_error *error)
 {
     HEWN_TRY(begin(reader, error));
     for (size_t i = 0; i < reader->header.element_count; i++) {

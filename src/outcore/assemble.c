@@ -94,8 +94,7 @@ static hewn_result assemble(assemble_work *work, uint8_t **frozen, hewn_error *e
 {
     hewn_store *store = work->store;
     HEWN_TRY(find_present(work, error));
-    HEWN_TRY(
-        hewn_store_make_model(store, work->present.count, store->triangles.count, true, &work->model, error));
+    HEWN_TRY(hewn_store_make_model(store, work->present.count, store->triangles.count, true, &work->model, error));
     *frozen = hewn_alloc(work->present.count, 1);
     if (!*frozen)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for what is left of a mesh");

@@ -298,6 +298,8 @@ static hewn_result save(cell_work *work, const cell_result *result, hewn_cell_re
 {
     const hewn_channel *marks = hewn_model_find_channel(&result->model, HEWN_DOMAIN_VERT, vertex_channel);
     const uint32_t *origins = marks ? (const uint32_t *)marks->values : result->mesh.vertex_origins;
+    if (!origins || !result->corners || !result->positions)
+        return hewn_fail(error, HEWN_INTERNAL, "a part of a mesh came back without what its vertices were");
     HEWN_TRY(put_vertices(work, result, origins, error));
     HEWN_TRY(put_locks(work, error));
     return put_triangles(work, result, origins, report, error);

@@ -14,8 +14,8 @@ typedef struct hewn_cell {
     hewn_store *store;
     const hewn_regions *regions;
     uint32_t region;
-    hewn_chain *own, *around; /* consumed */
-    hewn_chain *out;          /* gets what the own triangles become */
+    hewn_chain *own, *around;       /* consumed */
+    hewn_chain *out;                /* gets what the own triangles become */
     const hewn_simplify_desc *desc; /* its locks are looked for, once for all, where `find_locks` */
     bool find_locks;
     double share;  /* of the own triangles that can go, to stay; above 0 */

@@ -67,8 +67,8 @@ static hewn_result write_tail(hewn_chains *chains, hewn_chain *chain, hewn_error
     chain->blocks = items;
     HEWN_TRY(take_block(chains, &block, error));
     const size_t length = chain->tail_count * chains->size;
-    HEWN_TRY(
-        hewn_scratch_write(chains->file, chain->tail, length, (uint64_t)block * hewn_chains_block_bytes(chains), error));
+    HEWN_TRY(hewn_scratch_write(chains->file, chain->tail, length, (uint64_t)block * hewn_chains_block_bytes(chains),
+                                error));
     chain->blocks[chain->block_count++] = block;
     chain->tail_count = 0;
     return HEWN_OK;

@@ -7,8 +7,9 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
-/* Bytes of memory for a corner while its region is welded, with what sorting takes; and triangles of a part. */
-enum { CORNER_MEMORY = 80, PART = 1 << 14 };
+/* Bytes of memory for a corner while its region is welded, with what sorting takes; triangles of a part; and
+ * bytes of values that a face may have. */
+enum { CORNER_MEMORY = 80, PART = 1 << 14, MOST_VALUES = 64 };
 
 typedef struct facet_corner {
     double at[3];
@@ -19,8 +20,8 @@ typedef struct weld_work {
     hewn_facets *facets;
     hewn_store *store;
     hewn_regions regions;
-    hewn_chain *lists;   /* one a region */
-    hewn_pages *names;   /* the vertex of each corner */
+    hewn_chain *lists;     /* one a region */
+    hewn_pages *names;     /* the vertex of each corner */
     facet_corner *corners; /* of a region */
     size_t count;
     hewn_model part; /* faces on their way to the store */
@@ -59,8 +60,11 @@ static hewn_result learn(hewn_facets *facets, const hewn_model *part, hewn_error
         HEWN_TRY(hewn_model_add_channel(&facets->schema, info, &mine, error));
         facets->value_bytes += info->components * hewn_scalar_size(info->scalar);
     }
+    if (facets->value_bytes > MOST_VALUES)
+        return hewn_fail(error, HEWN_LIMIT, "facets have more values than %d bytes hold", MOST_VALUES);
     HEWN_TRY(hewn_chains_open(facets->output, sizeof(facet_corner), &facets->corners, error));
-    return facets->value_bytes > 0 ? hewn_chains_open(facets->output, facets->value_bytes, &facets->values, error) : HEWN_OK;
+    return facets->value_bytes > 0 ? hewn_chains_open(facets->output, facets->value_bytes, &facets->values, error)
+                                   : HEWN_OK;
 }
 
 static hewn_result add_corner(hewn_facets *facets, const double at[3], hewn_error *error)
@@ -81,14 +85,14 @@ static hewn_result add_corner(hewn_facets *facets, const double at[3], hewn_erro
 
 hewn_result hewn_facets_add(hewn_facets *facets, const hewn_model *part, hewn_error *error)
 {
-    char values[64];
+    char values[MOST_VALUES];
     if (!facets->known)
         HEWN_TRY(learn(facets, part, error));
     for (uint64_t f = 0; f < part->face_count; f++) {
         char *at = values;
         for (uint64_t k = 0; k < 3; k++)
             HEWN_TRY(add_corner(facets, part->positions + 3 * (size_t)part->corners[3 * f + k], error));
-        for (uint32_t i = 0; i < part->channel_count && facets->value_bytes <= sizeof values; i++) {
+        for (uint32_t i = 0; i < part->channel_count; i++) {
             const hewn_channel *channel = &part->channels[i];
             const size_t size = channel->info.components * hewn_scalar_size(channel->info.scalar);
             memcpy(at, (const char *)channel->values + f * size, size);
@@ -107,7 +111,8 @@ static hewn_result take_apart(void *user, const void *record, hewn_error *error)
     weld_work *work = user;
     facet_corner corner;
     memcpy(&corner, record, sizeof corner);
-    return hewn_chain_add(&work->facets->corners, &work->lists[hewn_region_of(&work->regions, corner.at)], record, error);
+    return hewn_chain_add(&work->facets->corners, &work->lists[hewn_region_of(&work->regions, corner.at)], record,
+                          error);
 }
 
 static hewn_result make_regions(weld_work *work, uint64_t memory, hewn_error *error)
@@ -209,7 +214,7 @@ static hewn_result take_face(void *user, const void *values, hewn_error *error)
     }
     for (uint64_t k = 0; k < 3; k++)
         HEWN_TRY(hewn_pages_get(work->names, 3 * work->taken + k, &work->part.corners[3 * f + k], error));
-    for (uint32_t i = 0; i < work->part.channel_count; i++) {
+    for (uint32_t i = 0; at && i < work->part.channel_count; i++) {
         hewn_channel *channel = &work->part.channels[i];
         const size_t size = channel->info.components * hewn_scalar_size(channel->info.scalar);
         memcpy((char *)channel->values + f * size, at, size);

@@ -14,7 +14,8 @@
  * when passes end. The share of the error that is left that a pass may take. */
 static const double least_share = 0.51, fullness = 0.85, error_share = 0.4;
 
-/* A pass that leaves more than this share has done next to nothing; where only as few are left as may be, the second. */
+/* A pass that leaves more than this share has done next to nothing; where only as few are left as may be, the second.
+ */
 static const double idle_share = 0.995, idle_share_of_errors = 0.9;
 
 enum { MOST_IDLE = 2, MOST_PASSES = 24 };
@@ -240,8 +241,7 @@ static hewn_result run(outcore_work *work, hewn_model *out, hewn_error *error)
     work->target = hewn_simplify_target(work->desc, work->store->triangles_before);
     HEWN_TRY(run_passes(work, error));
     work->more->disk_bytes =
-        hewn_chains_file_bytes(&work->store->chains) +
-        work->store->vertex_count * hewn_store_vertex_bytes(work->store);
+        hewn_chains_file_bytes(&work->store->chains) + work->store->vertex_count * hewn_store_vertex_bytes(work->store);
     HEWN_TRY(finish(work, out, error));
     report->triangles_before = work->store->triangles_before;
     report->dropped_faces = work->store->dropped_faces;
@@ -259,12 +259,8 @@ hewn_result hewn_outcore_simplify(hewn_store *store, const hewn_simplify_desc *d
                                   hewn_simplify_report *report, hewn_outcore_report *more, hewn_error *error)
 {
     const uint64_t each = hewn_outcore_bytes(&store->schema, 1);
-    outcore_work work = {.store = store,
-                         .desc = desc,
-                         .memory = memory,
-                         .capacity = memory / each,
-                         .report = report,
-                         .more = more};
+    outcore_work work = {
+        .store = store, .desc = desc, .memory = memory, .capacity = memory / each, .report = report, .more = more};
     *out = (hewn_model){0};
     *report = (hewn_simplify_report){0};
     *more = (hewn_outcore_report){0};

@@ -9,19 +9,19 @@ typedef struct hewn_pass {
     hewn_store *store;
     const hewn_simplify_desc *desc; /* its locks are looked for in the first pass */
     bool first;
-    double shift;        /* of the regions' planes, see hewn_regions_make() */
-    uint64_t capacity;   /* triangles that a region may have, with those around it */
-    size_t list_memory;  /* bytes for lists while they are added to */
-    uint64_t aim;        /* triangles to be left; 0: as few as the error allows */
-    bool strictly;       /* see hewn_cell */
-    double error;        /* a length; 0: none is given */
-    double began, span;  /* its share of the whole work, for progress */
+    double shift;       /* of the regions' planes, see hewn_regions_make() */
+    uint64_t capacity;  /* triangles that a region may have, with those around it */
+    size_t list_memory; /* bytes for lists while they are added to */
+    uint64_t aim;       /* triangles to be left; 0: as few as the error allows */
+    bool strictly;      /* see hewn_cell */
+    double error;       /* a length; 0: none is given */
+    double began, span; /* its share of the whole work, for progress */
     const hewn_progress *progress;
 } hewn_pass;
 
 typedef struct hewn_pass_report {
     uint32_t regions;
-    uint64_t vertices; /* that triangles named when it began */
+    uint64_t vertices;             /* that triangles named when it began */
     double distance, distance_low; /* of the mesh before and after, where they were measured */
 } hewn_pass_report;
 

@@ -8,7 +8,7 @@
 /* Points that stand for many: those whose number has a small hash, so that no order of the points matters. Zero is
  * empty. */
 typedef struct hewn_sample {
-    double *points;    /* 3 each */
+    double *points; /* 3 each */
     uint64_t *hashes;
     size_t count, room;
     uint64_t most; /* the greatest hash that is still taken; 0: all are */

@@ -23,31 +23,31 @@ enum { HEWN_STORE_LOCKED = 1 };
 typedef struct hewn_store {
     const char *output; /* beside which temporary files go; the caller's */
     uint32_t preserve;
-    size_t memory; /* bytes for pages of vertices */
-    hewn_model schema;        /* without vertices and faces: the channels, with unit and axes */
-    hewn_store_place *places; /* one a channel */
+    size_t memory;                    /* bytes for pages of vertices */
+    hewn_model schema;                /* without vertices and faces: the channels, with unit and axes */
+    hewn_store_place *places;         /* one a channel */
     bool vertices_known, faces_known; /* whether the channels of vertices are there, and the others */
     size_t value_bytes[3];            /* of a vertex, a corner, a face: by hewn_domain */
     hewn_pages *vertices;
     uint64_t vertex_count;
     hewn_chains chains;
-    hewn_chain triangles;   /* 3 numbers of vertices, values of 3 corners, values of the face */
-    hewn_chains polygons;   /* until they are cut: a record a corner, the corners that follow, the same */
+    hewn_chain triangles; /* 3 numbers of vertices, values of 3 corners, values of the face */
+    hewn_chains polygons; /* until they are cut: a record a corner, the corners that follow, the same */
     hewn_chain polygon_corners;
     uint64_t faces_before;     /* polygons count once */
     uint64_t triangles_before; /* that faces were cut into */
     uint64_t dropped_faces;    /* of those, for naming a vertex twice */
-    char *record; /* for one triangle or vertex at a time */
+    char *record;              /* for one triangle or vertex at a time */
 } hewn_store;
 
 /* An empty one. `preserve` as in hewn_simplify_desc, not 0: it decides which channels are carried along. */
 void hewn_store_begin(const char *output, uint32_t preserve, size_t memory, hewn_store *out);
 void hewn_store_free(hewn_store *store);
 
-/* Adds the vertices and faces of a part of a model, whose values may get other numbers on the way. Its faces name vertices of the whole, from 0 on, which may be yet
- * to come. All parts with vertices have the same channels of those, and all with faces the same of corners and faces,
- * HEWN_LIMIT where they have not. HEWN_BAD_INPUT for a position that is not finite; HEWN_LIMIT for more vertices than
- * indices can name; HEWN_IO; HEWN_OUT_OF_MEMORY. */
+/* Adds the vertices and faces of a part of a model, whose values may get other numbers on the way. Its faces name
+ * vertices of the whole, from 0 on, which may be yet to come. All parts with vertices have the same channels of those,
+ * and all with faces the same of corners and faces, HEWN_LIMIT where they have not. HEWN_BAD_INPUT for a position that
+ * is not finite; HEWN_LIMIT for more vertices than indices can name; HEWN_IO; HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_store_add(hewn_store *store, hewn_model *part, hewn_error *error);
 
 /* All is there: polygons are cut, in runs of many, and numbers of vertices checked. HEWN_BAD_INPUT for a vertex that is

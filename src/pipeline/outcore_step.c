@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "io/parts.h"
-#include "outcore/outcore.h"
 #include "outcore/facets.h"
+#include "outcore/outcore.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
 
@@ -27,7 +27,7 @@ typedef struct outcore_job {
     hewn_outcore_budget budget;
     hewn_store store;
     hewn_facets facets; /* on the way there, where a format shares no vertices */
-    uint64_t pages; /* bytes of the store's */
+    uint64_t pages;     /* bytes of the store's */
 } outcore_job;
 
 hewn_result hewn_outcore_budget_make(uint64_t limit, hewn_outcore_budget *out, hewn_error *error)
@@ -78,9 +78,8 @@ static uint64_t count_triangles(const hewn_model *model)
 /* `*fits`: the model is in `out`, and can be simplified there; else it is in the store. */
 static hewn_result read_whole(outcore_job *job, hewn_model *out, bool *fits, hewn_error *error)
 {
-    const hewn_read_desc read = {.format = job->report->from,
-                                 .memory_limit = job->budget.left / TIMES_OTHERS,
-                                 .progress = job->desc->progress};
+    const hewn_read_desc read = {
+        .format = job->report->from, .memory_limit = job->budget.left / TIMES_OTHERS, .progress = job->desc->progress};
     const hewn_result read_result = hewn_model_read(job->desc->input, &read, out, error);
     if (read_result != HEWN_OK)
         return hewn_blame_input(read_result, job->desc->input, error);

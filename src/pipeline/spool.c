@@ -19,8 +19,7 @@ hewn_result hewn_spool_create(const char *output, hewn_spool **out, hewn_error *
 {
     hewn_spool *spool = hewn_alloc_zero(1, sizeof *spool);
     *out = NULL;
-    hewn_result result =
-        spool ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for temporary files");
+    hewn_result result = spool ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for temporary files");
     for (int i = 0; result == HEWN_OK && i < FILES; i++)
         result = hewn_scratch_create(output, &spool->files[i], error);
     if (result != HEWN_OK)

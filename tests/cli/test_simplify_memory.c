@@ -111,9 +111,9 @@ typedef struct told_numbers {
 static told_numbers simplify_ball(const char *folder, const char *name, const char *ratio, const char *limit)
 {
     told_numbers out = {0};
-    run_result result = run_in(0, folder,
-                               (run_desc){.arguments = {"simplify", name, "-o", "small.ply", "--ratio", ratio,
-                                                        "--max-memory", limit}});
+    run_result result =
+        run_in(0, folder,
+               (run_desc){.arguments = {"simplify", name, "-o", "small.ply", "--ratio", ratio, "--max-memory", limit}});
     const char *counts = strstr(result.err, "\n  "), *work = strstr(result.err, "  in ");
     assert_non_null(counts);
     assert_non_null(work);
@@ -154,8 +154,8 @@ static void test_report(void **state)
     const double count = 2.0 * 110 * 109;
     char *folder = run_folder_create();
     write_ball(run_path(folder, "ball.ply"), 110, PLY);
-    char *report = report_of(folder, (run_desc){.arguments = {"simplify", "ball.ply", "-o", "small.ply", "--ratio", "0.1",
-                                                              "--max-memory", "33M"}});
+    char *report = report_of(folder, (run_desc){.arguments = {"simplify", "ball.ply", "-o", "small.ply", "--ratio",
+                                                              "0.1", "--max-memory", "33M"}});
     assert_true(json_number(report, "max_memory") == megabytes(33));
     assert_true(json_number(report, "peak.host_bytes") <= megabytes(33));
     assert_true(json_number(report, "passes") >= 1);
@@ -196,8 +196,8 @@ static void test_the_same_bytes(void **state)
     write_ball(run_path(folder, "ball.ply"), 150, PLY);
     for (int i = 0; i < 2; i++) {
         run_subfolder(folder, i ? "b" : "a");
-        run_desc desc = {.arguments = {"simplify", "ball.ply", "-o", i ? "b/small.ply" : "a/small.ply", "--ratio", "0.1",
-                                       "--max-memory", "33M", "-q"},
+        run_desc desc = {.arguments = {"simplify", "ball.ply", "-o", i ? "b/small.ply" : "a/small.ply", "--ratio",
+                                       "0.1", "--max-memory", "33M", "-q"},
                          .folder = folder,
                          .changes = {NO_LOADER, threads[i]}};
         run_result result = run_expecting(0, &desc);
@@ -215,10 +215,10 @@ static void test_what_fits_is_the_same(void **state)
     write_ball(run_path(folder, "ball.ply"), 30, PLY);
     for (int i = 0; i < 2; i++) {
         run_subfolder(folder, i ? "b" : "a");
-        run_result result = run_in(0, folder,
-                                   (run_desc){.arguments = {"simplify", "ball.ply", "-o",
-                                                            i ? "b/small.ply" : "a/small.ply", "--error", "0.1", "--no-self-intersections",
-                                                            limits[i] ? "--max-memory" : NULL, limits[i]}});
+        run_result result = run_in(
+            0, folder,
+            (run_desc){.arguments = {"simplify", "ball.ply", "-o", i ? "b/small.ply" : "a/small.ply", "--error", "0.1",
+                                     "--no-self-intersections", limits[i] ? "--max-memory" : NULL, limits[i]}});
         assert_lacks(result.err, "passes");
         run_result_destroy(&result);
     }
@@ -243,8 +243,9 @@ static void test_refusals(void **state)
             (run_desc){.arguments = {"simplify", "-", "--from", "ply", "-o", "small.ply", "--ratio", "0.1",
                                      "--max-memory", "33M"},
                        .input = run_path(folder, "ball.ply")});
-    fail_in(3, folder, "missing.ply",
-            (run_desc){.arguments = {"simplify", "missing.ply", "-o", "a.ply", "--ratio", "0.1", "--max-memory", "33M"}});
+    fail_in(
+        3, folder, "missing.ply",
+        (run_desc){.arguments = {"simplify", "missing.ply", "-o", "a.ply", "--ratio", "0.1", "--max-memory", "33M"}});
     /* The disk is full before all is there. */
     fail_in(1, folder, "temporary file",
             (run_desc){.arguments = {SIMPLIFY, "--max-memory", "33M"}, .file_limit = 200000});
@@ -276,12 +277,9 @@ static void test_cancel_at_any_moment(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_peak_stays_below_the_limit),
-        cmocka_unit_test(test_report),
-        cmocka_unit_test(test_results_that_are_large),
-        cmocka_unit_test(test_the_same_bytes),
-        cmocka_unit_test(test_what_fits_is_the_same),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_peak_stays_below_the_limit), cmocka_unit_test(test_report),
+        cmocka_unit_test(test_results_that_are_large),     cmocka_unit_test(test_the_same_bytes),
+        cmocka_unit_test(test_what_fits_is_the_same),      cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_cancel_at_any_moment),
     };
     return cmocka_run_group_tests_name("simplify_memory", tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* Simplification out of memory: lists and pages on disk, regions, and what must hold of meshes that were taken apart. */
+/* Simplification out of memory: lists and pages on disk, regions, and what must hold of meshes that were taken apart.
+ */
 #include <omp.h>
 #include <unistd.h>
 
@@ -348,8 +349,7 @@ static void test_locked_boundaries_stay(void **state)
     hewn_model model = make_sheet(n, 0.1);
     hewn_simplify_report report;
     hewn_outcore_report more;
-    hewn_model out =
-        simplify(&model, &(hewn_simplify_desc){.ratio = 0.1, .lock_boundary = true}, 2500, &report, &more);
+    hewn_model out = simplify(&model, &(hewn_simplify_desc){.ratio = 0.1, .lock_boundary = true}, 2500, &report, &more);
     assert_true(more.passes > 0);
     assert_int_equal(report.locked_vertices, 4 * n);
     qsort(out.positions, out.vertex_count, 3 * sizeof(double), compare_points);
@@ -574,8 +574,7 @@ static void test_what_is_refused(void **state)
         hewn_store store = store_of(&model, USUAL);
         hewn_error reason = {0};
         const uint64_t memory = hewn_outcore_bytes(&store.schema, cases[i].room);
-        const hewn_result result =
-            hewn_outcore_simplify(&store, &cases[i].desc, memory, &out, &report, &more, &reason);
+        const hewn_result result = hewn_outcore_simplify(&store, &cases[i].desc, memory, &out, &report, &more, &reason);
         if (result != cases[i].result)
             fail_msg("case %zu: result %d: %s", i, result, reason.message);
         assert_null(out.positions);

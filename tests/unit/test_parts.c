@@ -221,8 +221,10 @@ static void test_bad_files(void **state)
         hewn_result result;
     } cases[] = {
         {"a.ply", "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nend_header\n1\n", HEWN_BAD_INPUT},
-        {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
-                  "end_header\n1 2 x\n", HEWN_BAD_INPUT},
+        {"a.ply",
+         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+         "end_header\n1 2 x\n",
+         HEWN_BAD_INPUT},
         {"a.obj", "v 0 0 0\nf 1 2 3\n", HEWN_BAD_INPUT},
         {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/3 3/1\nvt 1 1\n", HEWN_LIMIT},
         {"a.obj", "v 0 0 nan\n", HEWN_BAD_INPUT},
@@ -302,8 +304,11 @@ static void test_memory_for_values(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ply_and_obj), cmocka_unit_test(test_obj_of_every_kind), cmocka_unit_test(test_stl),
-        cmocka_unit_test(test_bad_files),   cmocka_unit_test(test_values_that_come_later),
+        cmocka_unit_test(test_ply_and_obj),
+        cmocka_unit_test(test_obj_of_every_kind),
+        cmocka_unit_test(test_stl),
+        cmocka_unit_test(test_bad_files),
+        cmocka_unit_test(test_values_that_come_later),
         cmocka_unit_test(test_memory_for_values),
     };
     return cmocka_run_group_tests_name("parts", tests, NULL, NULL);
