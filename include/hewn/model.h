@@ -102,6 +102,9 @@ HEWN_API hewn_result hewn_model_from_mesh(const hewn_mesh *mesh, hewn_model *out
  * HEWN_OUT_OF_MEMORY; the errors of hewn_model_check(). */
 HEWN_API hewn_result hewn_triangles_from_model(const hewn_model *model, hewn_triangles *out, hewn_error *error);
 
+/* Float buffers as a model, normals as its vertex channel "normal"; unit and axes unknown. HEWN_OUT_OF_MEMORY. */
+HEWN_API hewn_result hewn_model_from_triangles(const hewn_triangles *triangles, hewn_model *out, hewn_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -77,6 +77,7 @@ typedef struct hewn_subdivide_desc {
     uint64_t corner_count;
     double crease_angle; /* edges whose faces bend by more than so many degrees are sharp for ever; 0: none */
     bool limit;          /* vertices go where they would be after infinitely many levels, and normals are exact there */
+    uint64_t max_memory; /* levels that take more bytes than that are refused; 0: more than the machine has */
     const hewn_progress *progress; /* or NULL; the stage is "subdivide" */
 } hewn_subdivide_desc;
 HEWN_API hewn_subdivide_desc hewn_subdivide_desc_default(void);
@@ -88,7 +89,8 @@ typedef struct hewn_subdivision hewn_subdivision;
 
 /* HEWN_BAD_INPUT where polygons are no manifold (see hewn_mesh_from_polygons()), for a face that is no triangle (LOOP),
  * for a crease or corner that is not there or a sharpness that is no number from 0 on, naming it;
- * HEWN_INVALID_ARGUMENT for a bad desc; HEWN_LIMIT past 2^32 - 2 half-edges; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. */
+ * HEWN_INVALID_ARGUMENT for a bad desc; HEWN_LIMIT for more corners or half-edges than 32 bits number, and
+ * HEWN_OUT_OF_MEMORY for more than max_memory, both before any level is made; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. */
 HEWN_API hewn_result hewn_subdivision_create(const hewn_polygons *polygons, const hewn_subdivide_desc *desc,
                                              hewn_subdivision **out, hewn_error *error);
 HEWN_API void hewn_subdivision_destroy(hewn_subdivision **subdivision);

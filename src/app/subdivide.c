@@ -26,6 +26,8 @@ static const hewn_option options[] = {
     {0, "adaptive", "ERROR",
      "Keep larger faces where they lie within ERROR of the next level, in the input's unit; their neighbours' vertices "
      "become theirs too, so nothing cracks."},
+    {0, "max-memory", "SIZE",
+     "Refuse levels that take more, such as 512M, before any is made. Default: what the machine has."},
     HEWN_OPTIONS_FRAME,
     HEWN_OPTION_FROM,
     HEWN_OPTION_TO,
@@ -104,6 +106,7 @@ static hewn_result read_subdivide(const hewn_arguments *arguments, hewn_file_ste
     desc->subdivide = out;
     const char *angle = hewn_arguments_value(arguments, "crease-angle");
     const char *adaptive = hewn_arguments_value(arguments, "adaptive");
+    const char *memory = hewn_arguments_value(arguments, "max-memory");
     HEWN_TRY(read_rules(arguments, &out->desc, error));
     HEWN_TRY(read_levels(arguments, &out->desc, error));
     if (angle)
@@ -114,6 +117,8 @@ static hewn_result read_subdivide(const hewn_arguments *arguments, hewn_file_ste
         HEWN_TRY(hewn_number_parse(adaptive, "--adaptive", &out->adaptive, error));
     if (adaptive && !(out->adaptive > 0))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--adaptive must be greater than 0, not %s", adaptive);
+    if (memory)
+        HEWN_TRY(hewn_bytes_parse(memory, "--max-memory", &out->desc.max_memory, error));
     out->creases = hewn_arguments_value(arguments, "creases");
     out->triangulate = hewn_arguments_has(arguments, "triangulate");
     return HEWN_OK;

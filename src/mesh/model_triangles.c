@@ -1,4 +1,5 @@
 #include <math.h>
+#include <string.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
@@ -67,5 +68,36 @@ hewn_result hewn_triangles_from_model(const hewn_model *model, hewn_triangles *o
     hewn_free(cut);
     if (result != HEWN_OK)
         hewn_triangles_destroy(out);
+    return result;
+}
+
+/* --- and back ----------------------------------------------------------------------------------------------------- */
+
+static hewn_result fill(const hewn_triangles *triangles, hewn_model *out, hewn_error *error)
+{
+    const uint64_t vertices = out->vertex_count = triangles->vertex_count;
+    const uint64_t faces = out->face_count = triangles->triangle_count;
+    out->positions = hewn_alloc(vertices, 3 * sizeof *out->positions);
+    out->corners = hewn_alloc(faces, 3 * sizeof *out->corners);
+    if (!out->positions || !out->corners)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu triangles", (unsigned long long)faces);
+    for (uint64_t i = 0; i < 3 * vertices; i++)
+        out->positions[i] = (double)triangles->positions[i];
+    memcpy(out->corners, triangles->indices, 3 * faces * sizeof *out->corners);
+    if (!triangles->normals)
+        return HEWN_OK;
+    const hewn_attribute_info info = {"normal", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3};
+    hewn_channel *normals;
+    HEWN_TRY(hewn_model_add_channel(out, &info, &normals, error));
+    memcpy(normals->values, triangles->normals, 3 * vertices * sizeof *triangles->normals);
+    return HEWN_OK;
+}
+
+hewn_result hewn_model_from_triangles(const hewn_triangles *triangles, hewn_model *out, hewn_error *error)
+{
+    *out = (hewn_model){0};
+    hewn_result result = fill(triangles, out, error);
+    if (result != HEWN_OK)
+        hewn_model_destroy(out);
     return result;
 }

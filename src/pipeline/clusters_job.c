@@ -70,12 +70,7 @@ static hewn_result load(clusters_job *job, hewn_error *error)
     hewn_result result = hewn_model_read(desc->input, &read, &job->model, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
-    if (desc->unit)
-        job->model.unit = desc->unit;
-    if (desc->up) {
-        job->model.up = *desc->up;
-        job->model.up_known = true;
-    }
+    hewn_frame_declare((hewn_frame){desc->unit, desc->up}, &job->model);
     HEWN_TRY(hewn_model_convert(&job->model, job->frame.unit, job->frame.up, &conversion, error));
     HEWN_TRY(round_positions(job, error));
     hewn_stage_end(&job->stages, "load");

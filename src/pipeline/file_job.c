@@ -56,12 +56,7 @@ static void take_frame(file_job *job)
     report->file_unit = model->unit;
     report->file_up = model->up;
     report->file_up_known = model->up_known;
-    if (desc->unit)
-        model->unit = desc->unit;
-    if (desc->up) {
-        model->up = *desc->up;
-        model->up_known = true;
-    }
+    hewn_frame_declare((hewn_frame){desc->unit, desc->up}, model);
 }
 
 static hewn_result load(file_job *job, hewn_error *error)

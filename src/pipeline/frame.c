@@ -33,3 +33,13 @@ const hewn_unit *hewn_frame_unit(hewn_mesh_format to, hewn_frame frame, const he
         return hewn_unit_find("mm");
     return strcmp(model->unit->name, "km") == 0 ? hewn_unit_find("m") : NULL;
 }
+
+void hewn_frame_declare(hewn_frame frame, hewn_model *model)
+{
+    if (frame.unit)
+        model->unit = frame.unit;
+    if (frame.up) {
+        model->up = *frame.up;
+        model->up_known = true;
+    }
+}

@@ -17,4 +17,7 @@ hewn_result hewn_frame_choose(hewn_mesh_format to, hewn_frame wanted, hewn_frame
 /* The unit of that frame for a model: a 3MF file without a unit is in millimetres, and has none for kilometres. */
 const hewn_unit *hewn_frame_unit(hewn_mesh_format to, hewn_frame frame, const hewn_model *model);
 
+/* Sets what a model is in, whatever its file says; what is NULL stays. */
+void hewn_frame_declare(hewn_frame frame, hewn_model *model);
+
 #endif

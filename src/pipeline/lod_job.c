@@ -104,12 +104,7 @@ static hewn_result load(lod_job *job, hewn_error *error)
     hewn_result result = hewn_model_read(desc->input, &read, &job->model, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
-    if (desc->unit)
-        job->model.unit = desc->unit;
-    if (desc->up) {
-        job->model.up = *desc->up;
-        job->model.up_known = true;
-    }
+    hewn_frame_declare((hewn_frame){desc->unit, desc->up}, &job->model);
     job->report->vertices_before = job->model.vertex_count;
     job->report->faces_before = job->model.face_count;
     job->report->triangles_before = count_triangles(&job->model);

@@ -129,16 +129,7 @@ static hewn_result add(hewn_model *model, const char *name, hewn_domain domain, 
 static hewn_result to_model(const hewn_triangles *triangles, const hewn_mesh_paint *paint, hewn_model *out,
                             hewn_error *error)
 {
-    out->vertex_count = triangles->vertex_count;
-    out->face_count = triangles->triangle_count;
-    out->positions = hewn_alloc(out->vertex_count, 3 * sizeof *out->positions);
-    out->corners = hewn_alloc(out->face_count, 3 * sizeof *out->corners);
-    if (!out->positions || !out->corners)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
-    for (uint64_t i = 0; i < 3 * out->vertex_count; i++)
-        out->positions[i] = (double)triangles->positions[i];
-    memcpy(out->corners, triangles->indices, out->face_count * 3 * sizeof *out->corners);
-    HEWN_TRY(add(out, "normal", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3, triangles->normals, error));
+    HEWN_TRY(hewn_model_from_triangles(triangles, out, error));
     HEWN_TRY(add(out, "color", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3, paint->colors, error));
     return add(out, "label", paint->domain, HEWN_SCALAR_INT32, 1, paint->labels, error);
 }

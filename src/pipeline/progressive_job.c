@@ -60,16 +60,6 @@ static hewn_result check(progressive_job *job, hewn_error *error)
 
 /* --- the stages --------------------------------------------------------------------------------------------------- */
 
-static void set_frame(progressive_job *job)
-{
-    if (job->desc->unit)
-        job->model.unit = job->desc->unit;
-    if (job->desc->up) {
-        job->model.up = *job->desc->up;
-        job->model.up_known = true;
-    }
-}
-
 static hewn_result convert(progressive_job *job, hewn_error *error)
 {
     hewn_conversion conversion;
@@ -86,7 +76,7 @@ static hewn_result make(progressive_job *job, hewn_error *error)
     hewn_result result = hewn_model_read(desc->input, &read, &job->model, error);
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
-    set_frame(job);
+    hewn_frame_declare((hewn_frame){desc->unit, desc->up}, &job->model);
     HEWN_TRY(convert(job, error));
     hewn_stage_end(&job->stages, "load");
     hewn_stage_begin(&job->stages);
@@ -136,7 +126,7 @@ static hewn_result take(progressive_job *job, hewn_error *error)
     }
     if (result != HEWN_OK)
         return hewn_blame_input(result, desc->input, error);
-    set_frame(job);
+    hewn_frame_declare((hewn_frame){desc->unit, desc->up}, &job->model);
     hewn_stage_end(&job->stages, "load");
     return write_mesh(job, error);
 }

@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/alloc.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "query/heap.h"
 #include "query/internal.h"
 
 /* A box of each, and what the other field's slope says of how far they are from the other solid. */
@@ -14,50 +14,16 @@ typedef struct pair {
     float apart[2];
 } pair;
 
+_Static_assert(sizeof(pair) <= HEWN_HEAP_MOST, "a pair fits into a heap");
+
 typedef struct search {
     hewn_asker asker[2];
     double slope[2]; /* bounds, in both boxes and between; infinite where unknown */
-    pair *heap;
-    size_t count, capacity;
+    hewn_heap heap;  /* of pairs */
     float high, point[2][3];
     float unseen, tolerance, fine;
     uint32_t most_boxes;
 } search;
-
-/* --- the heap -------------------------------------------------------------------------------------------------------
- */
-
-static void swap(search *s, size_t a, size_t b)
-{
-    pair held = s->heap[a];
-    s->heap[a] = s->heap[b];
-    s->heap[b] = held;
-}
-
-static hewn_result push(search *s, const pair *added, hewn_error *error)
-{
-    HEWN_TRY(hewn_reserve((void **)&s->heap, &s->capacity, s->count + 1, sizeof *s->heap, error));
-    size_t at = s->count++;
-    s->heap[at] = *added;
-    for (; at > 0 && s->heap[at].lower < s->heap[(at - 1) / 2].lower; at = (at - 1) / 2)
-        swap(s, at, (at - 1) / 2);
-    return HEWN_OK;
-}
-
-static pair pop(search *s)
-{
-    pair top = s->heap[0];
-    s->heap[0] = s->heap[--s->count];
-    for (size_t at = 0;;) {
-        size_t least = at;
-        for (size_t child = 2 * at + 1; child <= 2 * at + 2 && child < s->count; child++)
-            least = s->heap[child].lower < s->heap[least].lower ? child : least;
-        if (least == at)
-            return top;
-        swap(s, at, least);
-        at = least;
-    }
-}
 
 /* --- places ---------------------------------------------------------------------------------------------------------
  */
@@ -209,7 +175,7 @@ static hewn_result expand(search *s, const pair *at, hewn_error *error)
         if (!(next.lower < s->high))
             continue;
         best = next.lower < best.lower ? next : best;
-        HEWN_TRY(push(s, &next, error));
+        HEWN_TRY(hewn_heap_push(&s->heap, &next, error));
     }
     /* Only where the boxes leave room for a better place than the best so far. */
     float room = 0.5F * (hewn_apart(best.box[0].lo, best.box[0].hi) + hewn_apart(best.box[1].lo, best.box[1].hi));
@@ -222,16 +188,17 @@ static hewn_result run(search *s, const hewn_progress *progress, bool *ran_out, 
 {
     pair root = {.box = {hewn_search_root(s->asker[0].query), hewn_search_root(s->asker[1].query)}};
     root.lower = hewn_length_between(root.box[0].lo, root.box[0].hi, root.box[1].lo, root.box[1].hi);
-    HEWN_TRY(push(s, &root, error));
-    for (uint32_t divided = 0; s->count > 0; divided++) {
-        if (s->heap[0].lower >= s->high - s->tolerance || s->high == 0)
+    HEWN_TRY(hewn_heap_push(&s->heap, &root, error));
+    for (uint32_t divided = 0; s->heap.count > 0; divided++) {
+        if (hewn_heap_least(&s->heap) >= s->high - s->tolerance || s->high == 0)
             return HEWN_OK;
         *ran_out = divided >= s->most_boxes;
         if (*ran_out)
             return HEWN_OK;
         if (divided % 256 == 0)
             HEWN_TRY(hewn_progress_report(progress, "query", (double)divided / s->most_boxes, error));
-        pair at = pop(s);
+        pair at;
+        hewn_heap_pop(&s->heap, &at);
         HEWN_TRY(expand(s, &at, error));
     }
     return HEWN_OK;
@@ -239,9 +206,7 @@ static hewn_result run(search *s, const hewn_progress *progress, bool *ran_out, 
 
 static void finish(const search *s, bool ran_out, hewn_clearance *out)
 {
-    float low = fminf(s->unseen, s->high);
-    if (s->count > 0)
-        low = fminf(low, s->heap[0].lower);
+    float low = fminf(fminf(s->unseen, s->high), hewn_heap_least(&s->heap));
     out->found = s->high < INFINITY;
     out->overlap = s->high == 0;
     out->high = (double)s->high;
@@ -261,8 +226,10 @@ hewn_result hewn_query_clearance(hewn_query *a, hewn_query *b, const hewn_query_
     double diagonal = fmax(a->diagonal, b->diagonal), given = desc ? desc->tolerance : 0;
     if (!(given >= 0) || !isfinite(given))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", given);
-    search s = {
-        .high = INFINITY, .unseen = INFINITY, .most_boxes = desc && desc->most_boxes ? desc->most_boxes : 65536};
+    search s = {.heap.size = sizeof(pair),
+                .high = INFINITY,
+                .unseen = INFINITY,
+                .most_boxes = desc && desc->most_boxes ? desc->most_boxes : 65536};
     s.fine = fmaxf(a->fine, b->fine);
     s.tolerance = fmaxf((float)(given > 0 ? given : 1e-3 * diagonal), 4 * s.fine);
     for (int axis = 0; axis < 3; axis++) {
@@ -281,6 +248,6 @@ hewn_result hewn_query_clearance(hewn_query *a, hewn_query *b, const hewn_query_
         finish(&s, ran_out, out);
     hewn_asker_destroy(&s.asker[0]);
     hewn_asker_destroy(&s.asker[1]);
-    hewn_free(s.heap);
+    hewn_heap_free(&s.heap);
     return result;
 }

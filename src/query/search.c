@@ -3,54 +3,18 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/alloc.h"
 #include "base/error.h"
+#include "query/heap.h"
 #include "query/internal.h"
 
 /* A question under way. */
 typedef struct search {
     hewn_asker *asker;
     const hewn_question *question;
-    hewn_search_box *heap;
-    size_t count, capacity;
+    hewn_heap heap; /* of boxes */
     float high, point[3], normal[3];
     float unseen; /* the least of boxes too small to divide in which nothing was found */
 } search;
-
-/* --- the heap -------------------------------------------------------------------------------------------------------
- */
-
-static void swap(search *s, size_t a, size_t b)
-{
-    hewn_search_box held = s->heap[a];
-    s->heap[a] = s->heap[b];
-    s->heap[b] = held;
-}
-
-static hewn_result push(search *s, const hewn_search_box *box, hewn_error *error)
-{
-    HEWN_TRY(hewn_reserve((void **)&s->heap, &s->capacity, s->count + 1, sizeof *s->heap, error));
-    size_t at = s->count++;
-    s->heap[at] = *box;
-    for (; at > 0 && s->heap[at].lower < s->heap[(at - 1) / 2].lower; at = (at - 1) / 2)
-        swap(s, at, (at - 1) / 2);
-    return HEWN_OK;
-}
-
-static hewn_search_box pop(search *s)
-{
-    hewn_search_box top = s->heap[0];
-    s->heap[0] = s->heap[--s->count];
-    for (size_t at = 0;;) {
-        size_t least = at;
-        for (size_t child = 2 * at + 1; child <= 2 * at + 2 && child < s->count; child++)
-            least = s->heap[child].lower < s->heap[least].lower ? child : least;
-        if (least == at)
-            return top;
-        swap(s, at, least);
-        at = least;
-    }
-}
 
 /* --- places on the surface ------------------------------------------------------------------------------------------
  */
@@ -146,7 +110,7 @@ static hewn_result expand(search *s, const hewn_search_box *box, float smallest,
         left++;
     }
     for (uint32_t i = 0; i < left; i++)
-        HEWN_TRY(push(s, &parts[i], error));
+        HEWN_TRY(hewn_heap_push(&s->heap, &parts[i], error));
     /* Only where the box leaves room for a better place than the best so far. */
     if (left > 0 && (s->question->kind == HEWN_QUERY_RAY ||
                      parts[best].lower + 0.5F * hewn_apart(parts[best].lo, parts[best].hi) < s->high))
@@ -179,14 +143,15 @@ static hewn_result run(search *s, const hewn_query_limits *limits, float lower, 
     float smallest = fmaxf(0.25F * limits->tolerance, query->fine);
     root.lower = fmaxf(lower, hewn_question_lower(s->question, root.lo, root.hi));
     if (root.lower < INFINITY)
-        HEWN_TRY(push(s, &root, error));
-    for (uint32_t divided = 0; s->count > 0; divided++) {
-        if (s->heap[0].lower >= s->high - limits->tolerance)
+        HEWN_TRY(hewn_heap_push(&s->heap, &root, error));
+    for (uint32_t divided = 0; s->heap.count > 0; divided++) {
+        if (hewn_heap_least(&s->heap) >= s->high - limits->tolerance)
             return HEWN_OK;
         *ran_out = divided >= limits->most_boxes;
         if (*ran_out)
             return HEWN_OK;
-        hewn_search_box box = pop(s);
+        hewn_search_box box;
+        hewn_heap_pop(&s->heap, &box);
         HEWN_TRY(expand(s, &box, smallest, error));
     }
     return HEWN_OK;
@@ -210,9 +175,7 @@ static bool begins_inside(search *s, hewn_answer *out)
 
 static void finish(const search *s, const hewn_query_limits *limits, bool ran_out, hewn_answer *out)
 {
-    float low = fminf(s->unseen, s->high);
-    if (s->count > 0)
-        low = fminf(low, s->heap[0].lower);
+    float low = fminf(fminf(s->unseen, s->high), hewn_heap_least(&s->heap));
     double fine = (double)s->asker->query->fine, length = 0;
     out->found = s->high < INFINITY;
     out->high = (double)s->high;
@@ -231,7 +194,11 @@ static void finish(const search *s, const hewn_query_limits *limits, bool ran_ou
 hewn_result hewn_query_search(hewn_asker *asker, const hewn_question *question, const hewn_query_limits *limits,
                               hewn_answer *out, hewn_error *error)
 {
-    search s = {.asker = asker, .question = question, .high = INFINITY, .unseen = INFINITY};
+    search s = {.heap.size = sizeof(hewn_search_box),
+                .asker = asker,
+                .question = question,
+                .high = INFINITY,
+                .unseen = INFINITY};
     bool ran_out = false;
     *out = (hewn_answer){0};
     hewn_result result = HEWN_OK;
@@ -241,6 +208,6 @@ hewn_result hewn_query_search(hewn_asker *asker, const hewn_question *question, 
         result = run(&s, limits, lower, &ran_out, error);
     }
     finish(&s, limits, ran_out, out);
-    hewn_free(s.heap);
+    hewn_heap_free(&s.heap);
     return result;
 }

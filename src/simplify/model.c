@@ -62,33 +62,12 @@ hewn_result hewn_model_simplify(hewn_model *model, const hewn_simplify_desc *des
 
 /* --- the extraction's triangles ----------------------------------------------------------------------------------- */
 
-static hewn_result to_model(const hewn_triangles *triangles, hewn_model *out, hewn_error *error)
-{
-    const uint64_t verts = triangles->vertex_count, faces = triangles->triangle_count;
-    *out = (hewn_model){.vertex_count = verts, .face_count = faces};
-    out->positions = hewn_alloc(verts, 3 * sizeof *out->positions);
-    out->corners = hewn_alloc(faces, 3 * sizeof *out->corners);
-    if (!out->positions || !out->corners)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying %llu triangles",
-                         (unsigned long long)faces);
-    for (uint64_t i = 0; i < 3 * verts; i++)
-        out->positions[i] = (double)triangles->positions[i];
-    memcpy(out->corners, triangles->indices, 3 * faces * sizeof *out->corners);
-    if (!triangles->normals)
-        return HEWN_OK;
-    const hewn_attribute_info info = {"normal", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3};
-    hewn_channel *normals;
-    HEWN_TRY(hewn_model_add_channel(out, &info, &normals, error));
-    memcpy(normals->values, triangles->normals, 3 * verts * sizeof *triangles->normals);
-    return HEWN_OK;
-}
-
 hewn_result hewn_triangles_simplify(hewn_triangles *triangles, const hewn_simplify_desc *desc,
                                     hewn_simplify_report *report, hewn_error *error)
 {
     hewn_model model = {0};
     hewn_triangles out = {0};
-    hewn_result result = to_model(triangles, &model, error);
+    hewn_result result = hewn_model_from_triangles(triangles, &model, error);
     if (result == HEWN_OK)
         result = hewn_model_simplify(&model, desc, report, error);
     if (result == HEWN_OK)

@@ -228,23 +228,55 @@ static bool settle_inside(const corner_sides *sides, uint32_t length, uint32_t v
     return !itself && stand_once(next, before, length) && rank_sort(next, length, out);
 }
 
-/* What belongs into the row of a vertex goes to the front of `sides`, whose room is two words a corner. */
-static uint32_t settle_row(corner_sides *sides, uint32_t length, uint32_t v, uint8_t *flags)
+/* Rows under way: those of sides, in whose order vertices are served, become rows of neighbours. */
+typedef struct row_settler {
+    const uint32_t *places; /* where rows begin, by their corners */
+    corner_sides *sides;
+    uint32_t *items; /* room for a neighbour a corner */
+} row_settler;
+
+/* Where a row of `kept` neighbours lies: a vertex of a rim may have one more than it has corners. */
+static uint32_t *settled_row(const row_settler *rows, uint32_t v, uint32_t kept)
 {
+    const uint32_t place = rows->places[v], length = rows->places[v + 1] - place;
+    return kept <= length ? rows->items + place : (uint32_t *)(rows->sides + place);
+}
+
+/* Finds the neighbours of a vertex; returns how many they are. */
+static uint32_t settle_row(const row_settler *rows, uint32_t v, uint8_t *flags)
+{
+    corner_sides *sides = rows->sides + rows->places[v];
+    const uint32_t length = rows->places[v + 1] - rows->places[v];
     uint32_t inside[MOST_INSIDE], *row = (uint32_t *)sides, kept = 0;
     if (length <= MOST_INSIDE && settle_inside(sides, length, v, inside)) {
-        memcpy(row, inside, length * sizeof *row);
+        memcpy(rows->items + rows->places[v], inside, length * sizeof *inside);
         *flags = SMOOTH_USED;
         return length;
     }
     for (uint32_t i = 0; i < 2 * length; i++)
         if (row[i] != v)
             row[kept++] = row[i];
-    return settle_rim(row, kept, flags);
+    kept = settle_rim(row, kept, flags);
+    if (kept <= length)
+        memcpy(rows->items + rows->places[v], row, kept * sizeof *row);
+    return kept;
+}
+
+/* Settles all rows, whose lengths go to `lengths`; returns whether each is as long as it has corners, which is so for
+ * closed surfaces. */
+static bool settle_each(const row_settler *rows, uint32_t count, uint32_t *lengths, uint8_t *flags)
+{
+    bool even = true;
+#pragma omp parallel for schedule(static) reduction(&& : even)
+    for (uint32_t v = 0; v < count; v++) {
+        lengths[v] = settle_row(rows, v, flags + v);
+        even = even && lengths[v] == rows->places[v + 1] - rows->places[v];
+    }
+    return even;
 }
 
 /* Moves rows together; `first` holds the lengths of `out`'s. */
-static hewn_result take_rows(const uint32_t *places, const corner_sides *sides, smooth_rows *out, hewn_error *error)
+static hewn_result take_rows(const row_settler *rows, smooth_rows *out, hewn_error *error)
 {
     uint32_t sum = 0;
     for (uint32_t v = 0; v < out->count; v++) {
@@ -257,38 +289,45 @@ static hewn_result take_rows(const uint32_t *places, const corner_sides *sides, 
     if (!out->items)
         return out_of_memory(out->count, error);
 #pragma omp parallel for schedule(static)
-    for (uint32_t v = 0; v < out->count; v++)
-        memcpy(out->items + out->first[v], sides + places[v], (out->first[v + 1] - out->first[v]) * sizeof *out->items);
+    for (uint32_t v = 0; v < out->count; v++) {
+        const uint32_t length = out->first[v + 1] - out->first[v];
+        memcpy(out->items + out->first[v], settled_row(rows, v, length), length * sizeof *out->items);
+    }
     return HEWN_OK;
 }
 
-static hewn_result settle_rows(const hewn_polygons *polygons, uint32_t *places, smooth_rows *out, uint8_t *flags,
+static hewn_result settle_rows(const hewn_polygons *polygons, uint32_t **places, smooth_rows *out, uint8_t *flags,
                                hewn_error *error)
 {
-    corner_sides *sides = hewn_alloc(places[out->count + 1], sizeof *sides);
-    if (!sides)
-        return out_of_memory(out->count, error);
-    const row_filler filler = {.polygons = polygons, .ends = places + 1, .sides = sides};
-    serve_all(&filler);
-#pragma omp parallel for schedule(static)
-    for (uint32_t v = 0; v < out->count; v++)
-        out->first[v] = settle_row(sides + places[v], places[v + 1] - places[v], v, flags + v);
-    hewn_result result = take_rows(places, sides, out, error);
-    hewn_free(sides);
+    row_settler rows = {*places, hewn_alloc((*places)[out->count + 1], sizeof *rows.sides),
+                        hewn_alloc((*places)[out->count + 1], sizeof *rows.items)};
+    hewn_result result = rows.sides && rows.items ? HEWN_OK : out_of_memory(out->count, error);
+    if (result == HEWN_OK) {
+        const row_filler filler = {.polygons = polygons, .ends = *places + 1, .sides = rows.sides};
+        serve_all(&filler);
+        if (settle_each(&rows, out->count, out->first, flags)) {
+            hewn_free(out->first);
+            *out = (smooth_rows){out->count, *places, rows.items};
+            *places = rows.items = NULL;
+        } else {
+            result = take_rows(&rows, out, error);
+        }
+    }
+    hewn_free(rows.sides);
+    hewn_free(rows.items);
     return result;
 }
 
 hewn_result hewn_smooth_neighbours(const hewn_polygons *polygons, smooth_rows *out, uint8_t *flags, hewn_error *error)
 {
-    uint32_t count = (uint32_t)polygons->vertex_count, *places;
+    uint32_t count = (uint32_t)polygons->vertex_count, *places = NULL;
     *out = (smooth_rows){.count = count, .first = hewn_alloc((size_t)count + 1, sizeof *out->first)};
     hewn_result result = out->first ? HEWN_OK : out_of_memory(count, error);
     if (result == HEWN_OK)
         result = count_corners(polygons, &places, error);
-    if (result == HEWN_OK) {
-        result = settle_rows(polygons, places, out, flags, error);
-        hewn_free(places);
-    }
+    if (result == HEWN_OK)
+        result = settle_rows(polygons, &places, out, flags, error);
+    hewn_free(places);
     if (result != HEWN_OK)
         hewn_smooth_rows_free(out);
     return result;

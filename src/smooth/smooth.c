@@ -1,5 +1,6 @@
 #include "hewn/smooth.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -36,17 +37,46 @@ static hewn_result check_vertex(const hewn_polygons *polygons, const double *fre
     return HEWN_OK;
 }
 
-/* The first vertex, or the first face, that is not as it must be; names it. */
-static hewn_result check_all(const hewn_polygons *polygons, const double *freedom, bool faces, hewn_error *error)
+/* Faces of any number of corners: whether each follows the one before it. */
+static bool faces_follow(const hewn_polygons *polygons)
 {
-    uint64_t count = faces ? polygons->face_count : polygons->vertex_count, first = count;
-#pragma omp parallel for schedule(static) reduction(min : first)
-    for (uint64_t i = 0; i < count; i++)
-        if (i < first && (faces ? check_face(polygons, i, NULL) : check_vertex(polygons, freedom, i, NULL)) != HEWN_OK)
-            first = i;
-    if (first == count)
-        return HEWN_OK;
-    return faces ? check_face(polygons, first, error) : check_vertex(polygons, freedom, first, error);
+    int wrong = 0;
+#pragma omp parallel for schedule(static) reduction(| : wrong)
+    for (uint64_t f = 0; f < polygons->face_count; f++)
+        wrong |= polygons->first[f + 1] < polygons->first[f];
+    return !wrong;
+}
+
+/* Whether everything is as it must be; without a branch, as it nearly always is. */
+static bool all_hold(const hewn_polygons *polygons, const double *freedom)
+{
+    const uint64_t numbers = 3 * polygons->vertex_count, corners = smooth_face_begin(polygons, polygons->face_count);
+    int wrong = corners > INT32_MAX || (polygons->first && !faces_follow(polygons));
+    if (wrong)
+        return false;
+#pragma omp parallel reduction(| : wrong)
+    {
+#pragma omp for schedule(static) nowait
+        for (uint64_t i = 0; i < numbers; i++)
+            wrong |= !(fabs(polygons->positions[i]) <= DBL_MAX);
+#pragma omp for schedule(static) nowait
+        for (uint64_t i = 0; i < corners; i++)
+            wrong |= polygons->corners[i] >= polygons->vertex_count;
+#pragma omp for schedule(static)
+        for (uint64_t v = 0; v < (freedom ? polygons->vertex_count : 0); v++)
+            wrong |= !(freedom[v] >= 0 && freedom[v] <= 1);
+    }
+    return !wrong;
+}
+
+/* The first vertex, or the first face, that is not as it must be; names it. */
+static hewn_result check_each(const hewn_polygons *polygons, const double *freedom, hewn_error *error)
+{
+    for (uint64_t v = 0; v < polygons->vertex_count; v++)
+        HEWN_TRY(check_vertex(polygons, freedom, v, error));
+    for (uint64_t f = 0; f < polygons->face_count; f++)
+        HEWN_TRY(check_face(polygons, f, error));
+    return HEWN_OK;
 }
 
 static hewn_result check_polygons(const hewn_polygons *polygons, const double *freedom, hewn_error *error)
@@ -57,8 +87,7 @@ static hewn_result check_polygons(const hewn_polygons *polygons, const double *f
         return hewn_fail(error, HEWN_LIMIT, "2^31 vertices and more cannot be smoothed");
     if (polygons->face_count > 0 && !polygons->corners)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "faces need corners");
-    HEWN_TRY(check_all(polygons, freedom, false, error));
-    return check_all(polygons, freedom, true, error);
+    return all_hold(polygons, freedom) ? HEWN_OK : check_each(polygons, freedom, error);
 }
 
 /* --- measures ----------------------------------------------------------------------------------------------------- */
@@ -211,24 +240,41 @@ static hewn_result run_method(smooth_work *work, hewn_error *error)
     }
 }
 
+/* Where a number of `at` is outside the frame. Vertices that have not moved keep their bits. */
+static inline double place_out(const smooth_work *work, const frame *from, size_t v, size_t axis, double *move)
+{
+    const double before = work->polygons->positions[3 * v + axis], at = work->at[3 * v + axis];
+    *move = at - place_in(from, work->polygons->positions, v, axis);
+    return *move == 0 ? before : from->origin[axis] + at * from->scale;
+}
+
+/* The first vertex that would not stay finite, or their count. */
+static uint32_t find_lost(const smooth_work *work, const frame *from)
+{
+    uint32_t first = work->count;
+#pragma omp parallel for schedule(static) reduction(min : first)
+    for (uint32_t v = 0; v < work->count; v++) {
+        double move, wrong = 0;
+        for (size_t axis = 0; axis < 3; axis++)
+            wrong += 0 * place_out(work, from, v, axis, &move);
+        if (wrong != 0 && first > v)
+            first = v;
+    }
+    return first;
+}
+
 typedef struct moves {
     double sum, largest;
-    uint32_t first_lost; /* the first vertex that would not stay finite */
 } moves;
 
-/* Vertices that have not moved keep their bits. */
-static moves bring_block_back(const smooth_work *work, const frame *from, uint32_t begin, uint32_t end)
+static moves bring_block_back(const smooth_work *work, const frame *from, double *positions, uint32_t begin,
+                              uint32_t end)
 {
-    moves made = {0, 0, UINT32_MAX};
+    moves made = {0, 0};
     for (uint32_t v = begin; v < end; v++) {
-        double move[3], *out = work->next + 3 * (size_t)v;
-        for (size_t axis = 0; axis < 3; axis++) {
-            size_t i = 3 * (size_t)v + axis;
-            move[axis] = work->at[i] - place_in(from, work->polygons->positions, v, axis);
-            out[axis] = move[axis] == 0 ? work->polygons->positions[i] : from->origin[axis] + work->at[i] * from->scale;
-            if (!isfinite(out[axis]) && made.first_lost > v)
-                made.first_lost = v;
-        }
+        double move[3];
+        for (size_t axis = 0; axis < 3; axis++)
+            positions[3 * (size_t)v + axis] = place_out(work, from, v, axis, move + axis);
         double length = sqrt(smooth_dot(move, move)) * from->scale;
         made.sum += length;
         made.largest = length > made.largest ? length : made.largest;
@@ -236,23 +282,25 @@ static moves bring_block_back(const smooth_work *work, const frame *from, uint32
     return made;
 }
 
+/* `positions` may be those of the input, and are left alone where one would not be finite. */
 static hewn_result bring_back(const smooth_work *work, const frame *from, double *positions, hewn_error *error)
 {
     hewn_smooth_report *report = work->report;
     moves all[SMOOTH_BLOCKS];
+    const uint32_t lost = find_lost(work, from);
+    if (lost < work->count)
+        return hewn_fail(error, HEWN_LIMIT, "vertex %u would not stay finite", lost);
 #pragma omp parallel for schedule(static)
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
-        all[block] = bring_block_back(work, from, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
-                                      (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
+        all[block] =
+            bring_block_back(work, from, positions, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
+                             (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
     double sum = 0;
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++) {
-        if (all[block].first_lost != UINT32_MAX)
-            return hewn_fail(error, HEWN_LIMIT, "vertex %u would not stay finite", all[block].first_lost);
         sum += all[block].sum;
         report->largest_move = fmax(report->largest_move, all[block].largest);
     }
     report->mean_move = work->count > 0 ? sum / work->count : 0;
-    memcpy(positions, work->next, 3 * (size_t)work->count * sizeof *positions);
     return HEWN_OK;
 }
 

@@ -4,29 +4,44 @@
 #include "base/alloc.h"
 #include "smooth/work.h"
 
-/* to = from + factor * freedom * umbrella(from). Each vertex is gathered by itself in the order of its row, so the
- * result does not depend on threads. */
+/* Two neighbouring numbers, at any place where a double may be. */
+typedef double pair __attribute__((vector_size(2 * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+/* The sum of three numbers each of those that a row names, in the row's order. */
+static inline void sum_row(const double *from, const uint32_t *row, const uint32_t *end, double out[3])
+{
+    pair sum = {0, 0};
+    double last = 0;
+    for (; row < end; row++) {
+        const double *item = from + 3 * (size_t)*row;
+        sum += *(const pair *)item;
+        last += item[2];
+    }
+    out[0] = sum[0];
+    out[1] = sum[1];
+    out[2] = last;
+}
+
+/* A vertex after a step of `factor` towards the mean of its neighbours; one without neighbours stays. */
+static inline void step(const smooth_work *work, double factor, const double *from, uint32_t v, double out[3])
+{
+    const uint32_t begin = work->neighbours.first[v], end = work->neighbours.first[v + 1];
+    const double *x = from + 3 * (size_t)v;
+    const double share = end > begin ? 1.0 / (end - begin) : 0;
+    const double free = end > begin ? factor * smooth_freedom(work, v) : 0;
+    double sum[3];
+    sum_row(from, work->neighbours.items + begin, work->neighbours.items + end, sum);
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = x[axis] + free * (sum[axis] * share - x[axis]);
+}
+
+/* Each vertex is gathered by itself in the order of its row, so the result does not depend on threads. */
 static void sweep(const smooth_work *work, double factor, const double *from, double *to)
 {
-    const uint32_t *first = work->neighbours.first, *items = work->neighbours.items;
-    const double *freedom = work->freedom;
+    const smooth_work held = *work;
 #pragma omp parallel for schedule(static)
-    for (uint32_t v = 0; v < work->count; v++) {
-        const double *x = from + 3 * (size_t)v;
-        uint32_t begin = first[v], end = first[v + 1];
-        double a = 0, b = 0, c = 0, share = end > begin ? 1.0 / (end - begin) : 0;
-        for (uint32_t i = begin; i < end; i++) {
-            const double *y = from + 3 * (size_t)items[i];
-            a += y[0];
-            b += y[1];
-            c += y[2];
-        }
-        double free = end > begin ? (freedom ? factor * freedom[v] : factor) : 0;
-        double *out = to + 3 * (size_t)v;
-        out[0] = x[0] + free * (a * share - x[0]);
-        out[1] = x[1] + free * (b * share - x[1]);
-        out[2] = x[2] + free * (c * share - x[2]);
-    }
+    for (uint32_t v = 0; v < held.count; v++)
+        step(&held, factor, from, v, to + 3 * (size_t)v);
 }
 
 static hewn_result report(const smooth_work *work, uint32_t done, hewn_error *error)
@@ -52,52 +67,69 @@ hewn_result hewn_smooth_umbrella(smooth_work *work, hewn_error *error)
 
 /* --- HC ----------------------------------------------------------------------------------------------------------- */
 
-/* What the step took too far: pull = p - (original * o + (1 - original) * q). */
-static void measure_pull(const smooth_work *work, const double *start, double *pull)
+/* What a step takes too far: pull = q - (original * o + (1 - original) * p), for p that the step would make q and that
+ * was o at the start. Then p becomes q - (push * pull + (1 - push) * mean of the neighbours' pulls). */
+typedef struct hc_state {
+    smooth_work work;
+    const double *start;
+    double original, push, *pull;
+} hc_state;
+
+/* Where the pull of a vertex is counted from. */
+static inline double hc_origin(const hc_state *state, size_t i)
 {
-    double original = work->desc->original;
-    const double *before = work->at, *now = work->next;
-#pragma omp parallel for schedule(static)
-    for (uint32_t v = 0; v < work->count; v++)
-        for (size_t i = 3 * (size_t)v; i < 3 * (size_t)v + 3; i++)
-            pull[i] = now[i] - (original * start[i] + (1 - original) * before[i]);
+    return state->original > 0 ? state->original * state->start[i] + (1 - state->original) * state->work.at[i]
+                               : state->work.at[i];
 }
 
-/* p -= push * pull + (1 - push) * mean of the neighbours' pulls. */
-static void push_back(const smooth_work *work, const double *pull)
+static void measure_pull(const hc_state *all)
 {
-    const uint32_t *first = work->neighbours.first, *items = work->neighbours.items;
-    double push = work->desc->push;
+    const hc_state state = *all;
 #pragma omp parallel for schedule(static)
-    for (uint32_t v = 0; v < work->count; v++) {
-        uint32_t begin = first[v], end = first[v + 1];
-        double sum[3] = {0, 0, 0}, free = smooth_freedom(work, v);
-        for (uint32_t i = begin; i < end; i++)
-            for (size_t axis = 0; axis < 3; axis++)
-                sum[axis] += pull[3 * (size_t)items[i] + axis];
-        for (size_t axis = 0; axis < 3 && end > begin; axis++) {
-            double mean = sum[axis] / (end - begin);
-            work->next[3 * (size_t)v + axis] -= free * (push * pull[3 * (size_t)v + axis] + (1 - push) * mean);
+    for (uint32_t v = 0; v < state.work.count; v++) {
+        double to[3];
+        step(&state.work, 1, state.work.at, v, to);
+        for (size_t axis = 0; axis < 3; axis++)
+            state.pull[3 * (size_t)v + axis] = to[axis] - hc_origin(&state, 3 * (size_t)v + axis);
+    }
+}
+
+static void push_back(const hc_state *all)
+{
+    const hc_state state = *all;
+    const smooth_rows *rows = &state.work.neighbours;
+#pragma omp parallel for schedule(static)
+    for (uint32_t v = 0; v < state.work.count; v++) {
+        const uint32_t begin = rows->first[v], end = rows->first[v + 1];
+        const double share = end > begin ? (1 - state.push) / (end - begin) : 0;
+        const double free = end > begin ? smooth_freedom(&state.work, v) : 0;
+        double sum[3];
+        sum_row(state.pull, rows->items + begin, rows->items + end, sum);
+        for (size_t axis = 0; axis < 3; axis++) {
+            const size_t i = 3 * (size_t)v + axis;
+            const double pull = state.pull[i];
+            state.work.at[i] = pull + hc_origin(&state, i) - free * (state.push * pull + sum[axis] * share);
         }
     }
 }
 
 hewn_result hewn_smooth_hc(smooth_work *work, hewn_error *error)
 {
-    size_t numbers = 3 * (size_t)work->count;
-    double *start = hewn_alloc(numbers, 2 * sizeof *start);
-    if (!start)
+    const size_t numbers = 3 * (size_t)work->count;
+    const hewn_smooth_desc *desc = work->desc;
+    double *start = desc->original > 0 ? hewn_alloc(numbers, sizeof *start) : NULL;
+    if (desc->original > 0 && !start)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
-    memcpy(start, work->at, numbers * sizeof *start);
+    if (start)
+        memcpy(start, work->at, numbers * sizeof *start);
+    const hc_state state = {*work, start, desc->original, desc->push, work->next};
     hewn_result result = HEWN_OK;
-    for (uint32_t i = 0; i < work->desc->iterations && result == HEWN_OK; i++) {
+    for (uint32_t i = 0; i < desc->iterations && result == HEWN_OK; i++) {
         result = report(work, i, error);
         if (result != HEWN_OK)
             break;
-        sweep(work, 1, work->at, work->next);
-        measure_pull(work, start, start + numbers);
-        push_back(work, start + numbers);
-        smooth_swap(work);
+        measure_pull(&state);
+        push_back(&state);
     }
     hewn_free(start);
     return result;

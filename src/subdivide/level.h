@@ -8,6 +8,9 @@
 /* Sharp for ever. */
 static const float SHARP_FOREVER = 10;
 
+/* Corners, and edges from both sides, are numbered by 32 bits, a few of which mean something else. */
+#define SUB_MOST_NUMBERS 0xFFFFFFF0u
+
 /* A corner c of a face is at the vertex corner_verts[c], and corner_edges[c] is the edge from there to the next corner.
  *
  * Edge e runs from edge_verts[2e] to edge_verts[2e + 1]. edge_corners[2e] is the corner whose edge it is in that

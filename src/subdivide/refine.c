@@ -22,9 +22,6 @@ static hewn_result allocate(const refiner *refine, bool edges, hewn_error *error
     uint64_t faces = refine->triangles ? 4 * (uint64_t)from->faces : from->corners;
     uint64_t corners = faces * (refine->triangles ? 3 : 4), edge_count = 2 * (uint64_t)from->edges + from->corners;
     uint64_t verts = (uint64_t)from->verts + from->edges + (refine->triangles ? 0 : from->faces);
-    if (corners > 0xFFFFFFF0u || 2 * edge_count > 0xFFFFFFF0u)
-        return hewn_fail(error, HEWN_LIMIT, "a level of %llu faces has more corners or edges than there are numbers",
-                         (unsigned long long)faces);
     *to = (sub_level){.verts = (uint32_t)verts, .faces = (uint32_t)faces, .corners = (uint32_t)corners};
     to->sides = refine->triangles ? 3 : 4;
     to->edges = (uint32_t)edge_count;

@@ -128,7 +128,7 @@ static hewn_result build(seams *cut, const hewn_subdivision *base, hewn_uv_rule 
     out->masks = base->masks;
     out->limit = base->limit;
     out->masks.linear = rule == HEWN_UV_ALL || base->masks.scheme == HEWN_SCHEME_BILINEAR;
-    return hewn_subdivision_grow(out, NULL, error);
+    return hewn_subdivision_grow(out, &(hewn_subdivide_desc){0}, error);
 }
 
 hewn_result hewn_sub_seams(const hewn_subdivision *base, const void *values, size_t stride, hewn_uv_rule rule,

@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/progress.h"
+#include "subdivide/plan.h"
 #include "subdivide/points.h"
 #include "subdivide/tags.h"
 
@@ -71,11 +72,12 @@ static hewn_result check_faces(const hewn_subdivision *sub, hewn_error *error)
     return HEWN_OK;
 }
 
-hewn_result hewn_subdivision_grow(hewn_subdivision *sub, const hewn_progress *progress, hewn_error *error)
+hewn_result hewn_subdivision_grow(hewn_subdivision *sub, const hewn_subdivide_desc *desc, hewn_error *error)
 {
     HEWN_TRY(check_faces(sub, error));
+    HEWN_TRY(hewn_sub_plan(sub, desc->max_memory, error));
     for (uint32_t i = 0; i < sub->count; i++) {
-        HEWN_TRY(hewn_progress_report(progress, "subdivide", (double)i / sub->count, error));
+        HEWN_TRY(hewn_progress_report(desc->progress, "subdivide", (double)i / sub->count, error));
         bool edges = i + 1 < sub->count || sub->limit;
         HEWN_TRY(hewn_sub_level_refine(&sub->levels[i], sub->masks.scheme == HEWN_SCHEME_LOOP, edges,
                                        sub->masks.creasing, &sub->levels[i + 1], error));
@@ -94,7 +96,7 @@ static hewn_result build(hewn_subdivision *sub, const hewn_polygons *polygons, c
 {
     HEWN_TRY(hewn_sub_level_create(polygons, &sub->levels[0], error));
     HEWN_TRY(hewn_sub_tag(&sub->levels[0], polygons->positions, desc, &sub->tags, error));
-    return hewn_subdivision_grow(sub, desc->progress, error);
+    return hewn_subdivision_grow(sub, desc, error);
 }
 
 hewn_result hewn_subdivision_create(const hewn_polygons *polygons, const hewn_subdivide_desc *desc,

@@ -14,8 +14,8 @@ struct hewn_subdivision {
     sub_tag_counts tags;
 };
 
-/* All levels after levels[0], which is there with its tags. */
-hewn_result hewn_subdivision_grow(hewn_subdivision *sub, const hewn_progress *progress, hewn_error *error);
+/* All levels after levels[0], which is there with its tags; of the desc, only its memory and progress are looked at. */
+hewn_result hewn_subdivision_grow(hewn_subdivision *sub, const hewn_subdivide_desc *desc, hewn_error *error);
 
 /* Values of the last level, not of the limit. */
 hewn_result hewn_subdivision_refine(const hewn_subdivision *sub, const double *control, uint32_t width, double *out,

@@ -287,6 +287,10 @@ static void test_refusals(void **state)
     hewn_progress progress = {stop, NULL};
     expect(HEWN_BAD_INPUT, "face 0 has 4 corners", &model, (hewn_subdivide_desc){.scheme = HEWN_SCHEME_LOOP});
     expect(HEWN_INVALID_ARGUMENT, "levels", &model, (hewn_subdivide_desc){.levels = 17});
+    expect(HEWN_LIMIT, "more than there are numbers", &model,
+           (hewn_subdivide_desc){.levels = 16, .max_memory = UINT64_MAX});
+    expect(HEWN_OUT_OF_MEMORY, "more than the 1 MiB that may be used", &model,
+           (hewn_subdivide_desc){.levels = 9, .max_memory = 1 << 20});
     expect(HEWN_INVALID_ARGUMENT, "angle", &model, (hewn_subdivide_desc){.crease_angle = NAN});
     expect(HEWN_BAD_INPUT, "no edge from vertex 0 to 7", &model,
            (hewn_subdivide_desc){.creases = &crease, .crease_count = 1});
