@@ -184,6 +184,7 @@ static hewn_simplify_desc describe(const cell_work *work)
     desc.faces = cell->share > 0 ? work->triangles - work->own + (left > 0 ? left : 1) : 0;
     desc.ratio = desc.relative_error = 0;
     desc.error = cell->error;
+    desc.measure = desc.measure || cell->error > 0; /* tells how little was used of it, which is left for others then */
     desc.lock_boundary = desc.lock_labels = false;
     desc.lock_angle = 0;
     desc.labels = NULL;

@@ -10,9 +10,10 @@
 #include "simplify/channels.h"
 #include "simplify/desc.h"
 
-/* How full memory shall be
- * when passes end. The share of the error that is left that a pass may take. */
-static const double least_share = 0.51, fullness = 0.85, error_share = 0.4;
+/* A pass leaves no less than this share, since several small steps, each with other planes, come out better and sooner
+ * than a large one; but with an error, which every pass takes its share of, few steps do. How full memory shall be when
+ * passes end. The share of the error that is left that a pass may take. */
+static const double least_share = 0.51, least_share_of_errors = 0.1, fullness = 0.85, error_share = 0.5;
 
 /* A pass that leaves more than this share has done next to nothing; where only as few are left as may be, the second.
  */
@@ -88,7 +89,7 @@ static uint64_t choose_aim(const outcore_work *work, bool *strictly)
     double aim = room;
     if (target > room)
         aim = work->more->passes == 0 ? sqrt(now * target) : target;
-    aim = fmax(aim, least_share * now);
+    aim = fmax(aim, (work->allowed > 0 ? least_share_of_errors : least_share) * now);
     *strictly = target > room && aim <= target;
     return (uint64_t)aim;
 }
