@@ -49,6 +49,21 @@ typedef struct hewn_text_desc {
  */
 HEWN_API hewn_node hewn_font_text(hewn_field *field, hewn_font *font, const char *text, const hewn_text_desc *desc);
 
+/* Lengths of a font in ems, upward. */
+typedef struct hewn_font_metrics {
+    double line_height;         /* between baselines */
+    double ascender, descender; /* above the baseline; a descender is mostly below 0 */
+    double underline_y, underline_thickness;
+} hewn_font_metrics;
+
+HEWN_API void hewn_font_measure(const hewn_font *font, hewn_font_metrics *out);
+
+/* How much nearer to the first one (below 0) than its advance the second of two characters comes. */
+typedef struct hewn_kerning {
+    uint32_t first, second;
+    double advance; /* ems */
+} hewn_kerning;
+
 #ifdef __cplusplus
 }
 #endif

@@ -2,12 +2,15 @@
 #ifndef HEWN_H
 #define HEWN_H
 
+#include "hewn/atlas.h"
+#include "hewn/atlas_job.h"
 #include "hewn/base.h"
 #include "hewn/check.h"
 #include "hewn/clusters.h"
 #include "hewn/clusters_job.h"
 #include "hewn/device.h"
 #include "hewn/distance.h"
+#include "hewn/evaluate.h"
 #include "hewn/extract.h"
 #include "hewn/field.h"
 #include "hewn/file_job.h"

@@ -39,6 +39,8 @@ typedef struct hewn_read_desc {
     hewn_mesh_format format;       /* HEWN_MESH_UNKNOWN: from the path; needed for "-", standard input */
     uint64_t memory_limit;         /* bytes that a compressed file may grow to; 0 is 16 GiB */
     const hewn_progress *progress; /* or NULL; the stage is "load" */
+    bool base_colors; /* of glTF: the materials' base colours too, as a face channel "color" of 4 FLOAT, linear, unless
+                         all are white */
 } hewn_read_desc;
 
 /* Reads a mesh file, compressed with gzip or not, as it is: polygons uncut, vertices in the file's order, attributes,

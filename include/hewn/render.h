@@ -59,6 +59,8 @@ typedef struct hewn_render_desc {
     const hewn_field *painted; /* or NULL: what has the surface's colours (hewn_color()) where `colour` is all 0, and
                                   its root; for a renderer of a field mostly that field */
     hewn_node painted_root;
+    const float *corner_colors; /* or NULL; for a renderer of triangles: their corners' colours, linear, nine numbers a
+                                   triangle, where `colour` is all 0 */
     const hewn_progress *progress; /* or NULL; the stage is "render" */
 } hewn_render_desc;
 

@@ -24,8 +24,8 @@ typedef struct hewn_render_job_desc {
                                then sides of the plane that are not given are those of the scene, -1 to 1 for a .vm */
     const char *device;     /* as of hewn_mesh_job_desc; "host": rays are followed by the host's processors */
     bool validation;
-    double began; /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
-    const hewn_progress *progress;
+    double began;                  /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
+    const hewn_progress *progress; /* or NULL; the last stage is "write", before which no file is there */
 } hewn_render_job_desc;
 
 /* What a job did. Plain data. */

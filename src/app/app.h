@@ -20,7 +20,8 @@ typedef struct hewn_command {
 
 extern const hewn_command hewn_command_mesh, hewn_command_info, hewn_command_check, hewn_command_repair,
     hewn_command_convert, hewn_command_smooth, hewn_command_subdivide, hewn_command_simplify, hewn_command_lod,
-    hewn_command_voxelize, hewn_command_render, hewn_command_eval, hewn_command_query, hewn_command_devices;
+    hewn_command_voxelize, hewn_command_render, hewn_command_atlas, hewn_command_eval, hewn_command_query,
+    hewn_command_devices;
 extern const hewn_command *const hewn_commands[];
 extern const size_t hewn_command_count;
 
@@ -57,6 +58,10 @@ int hewn_finish_output(int code);
 
 /* From now on the first Ctrl-C (or SIGTERM, SIGHUP) asks for the end, and the second one ends the process. */
 void hewn_signals_catch(void);
+
+/* From now on, until this is taken back, such a signal ends the process right away: nothing has been written that would
+ * have to be cleaned up, but for the file `remove` (or NULL). Not in a stage of progress that is called "write". */
+void hewn_signals_end_at_once(bool may, const char *remove);
 
 /* Whether the end was asked for. */
 bool hewn_signals_cancelled(void);

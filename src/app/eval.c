@@ -12,14 +12,15 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/json.h"
+#include "base/progress.h"
 #include "pipeline/domain.h"
 
-enum { BATCH = 1 << 16, PIECE = 1 << 12, MOST_SIDE = 1 << 16 };
+enum { BATCH = 1 << 14, DEVICE_BATCH = 1 << 16, PIECE = 1 << 10, MOST_SIDE = 1 << 16 };
 
 typedef struct eval_request {
     hewn_scene_arguments scene;
     const hewn_arguments *arguments;
-    const char *points, *output, *report;
+    const char *points, *output, *report, *device;
     uint32_t grid[3]; /* 0: no grid */
     hewn_box bounds;
     bool bounded, gradient, inside, quiet;
@@ -50,6 +51,9 @@ static const hewn_option options[] = {
     {'D', NULL, "NAME=VALUE", "Set a parameter of the scene. May be repeated."},
     {0, "from", "FORMAT", "Read the scene as lua or vm. Default: by its extension; needed where it is `-`."},
     {0, "allow-path", NULL, "Let the scene read files outside its own folder."},
+    {0, "device", "DEVICE",
+     "Let the device of this index, or whose name contains this, compute, in single precision; not with --report. "
+     "Default: `host`, the host's processors. Very large fields are always theirs."},
     HEWN_OPTION_QUIET,
     HEWN_OPTION_HELP,
 };
@@ -84,6 +88,8 @@ static hewn_result check_request(const eval_request *request, bool at, hewn_erro
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
                          ways ? "--points, --at and --grid exclude each other"
                               : "where? Give --points FILE, --at X,Y,Z or --grid NXxNY");
+    if (request->device && request->report)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--report tells what bounds save the host; a device takes none");
     if (request->grid[0] > 0 && request->gradient)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--grid prints values, without --gradient");
     if (request->grid[0] == 0 && (request->inside || request->report || request->bounded))
@@ -103,6 +109,9 @@ static hewn_result read_request(const hewn_arguments *arguments, eval_request *r
     request->points = hewn_arguments_value(arguments, "points");
     request->output = hewn_arguments_value(arguments, "output");
     request->report = hewn_arguments_value(arguments, "report");
+    request->device = hewn_arguments_value(arguments, "device");
+    if (request->device && strcmp(request->device, "host") == 0)
+        request->device = NULL;
     request->gradient = hewn_arguments_has(arguments, "gradient");
     request->inside = hewn_arguments_has(arguments, "inside");
     request->quiet = hewn_arguments_has(arguments, "quiet");
@@ -121,10 +130,44 @@ static hewn_result read_request(const hewn_arguments *arguments, eval_request *r
 /* --- points ---------------------------------------------------------------------------------------------------------
  */
 
-/* All threads, each on pieces of its own. */
-static hewn_result eval_points(const hewn_field *field, bool gradient, const double *points, size_t count,
-                               double *values, hewn_error *error)
+/* Who computes. */
+typedef struct computing {
+    const hewn_field *field;
+    hewn_device *device;
+    hewn_evaluator *evaluator; /* NULL: the host */
+} computing;
+
+static hewn_result begin_computing(const eval_request *request, const hewn_field *field, computing *out,
+                                   hewn_error *error)
 {
+    const char *validation = getenv("HEWN_VALIDATION");
+    const hewn_device_desc desc = {.choice = request->device,
+                                   .validation = validation && validation[0] && strcmp(validation, "0") != 0};
+    *out = (computing){.field = field};
+    if (!request->device)
+        return HEWN_OK;
+    HEWN_TRY(hewn_device_create(&desc, &out->device, error));
+    return hewn_evaluator_create(out->device, field, hewn_field_root(field), &out->evaluator, error);
+}
+
+static hewn_result end_computing(computing *on, hewn_result result, hewn_error *error)
+{
+    if (result == HEWN_OK && on->device && hewn_device_message_count(on->device) > 0)
+        result = hewn_fail(error, HEWN_DEVICE_LOST, "the validation layer gave messages");
+    hewn_evaluator_destroy(&on->evaluator);
+    hewn_device_destroy(&on->device);
+    return result;
+}
+
+/* On the host all threads, each on pieces of its own. */
+static hewn_result eval_points(const computing *on, bool gradient, const double *points, size_t count, double *values,
+                               hewn_error *error)
+{
+    const hewn_field *field = on->field;
+    if (on->evaluator && gradient)
+        return hewn_evaluator_gradients(on->evaluator, points, count, values, error);
+    if (on->evaluator)
+        return hewn_evaluator_values(on->evaluator, points, count, values, error);
     hewn_result all = HEWN_OK;
     hewn_error reason = {0};
 #pragma omp parallel for schedule(dynamic) if (count > PIECE)
@@ -156,7 +199,7 @@ static void print_values(hewn_rows *rows, bool gradient, const double *values, s
     }
 }
 
-static hewn_result eval_given(const eval_request *request, const hewn_field *field, hewn_rows *rows, hewn_error *error)
+static hewn_result eval_given(const eval_request *request, const computing *on, hewn_rows *rows, hewn_error *error)
 {
     for (size_t i = 0; i < request->arguments->given_count; i++) {
         const hewn_given *given = &request->arguments->given[i];
@@ -167,13 +210,13 @@ static hewn_result eval_given(const eval_request *request, const hewn_field *fie
         HEWN_TRY(hewn_triple_parse(&text, "--at", p, error));
         if (*text)
             return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--at is X,Y,Z, not '%s'", given->value);
-        HEWN_TRY(eval_points(field, request->gradient, p, 1, values, error));
+        HEWN_TRY(eval_points(on, request->gradient, p, 1, values, error));
         print_values(rows, request->gradient, values, 1);
     }
     return HEWN_OK;
 }
 
-static hewn_result eval_lines(const eval_request *request, const hewn_field *field, hewn_number_lines *lines,
+static hewn_result eval_lines(const eval_request *request, const computing *on, hewn_number_lines *lines,
                               hewn_rows *rows, hewn_error *error)
 {
     double *points = hewn_alloc(BATCH, 3 * sizeof *points), *values = hewn_alloc(BATCH, 4 * sizeof *values);
@@ -184,7 +227,7 @@ static hewn_result eval_lines(const eval_request *request, const hewn_field *fie
         if (result == HEWN_OK && hewn_signals_cancelled())
             result = hewn_fail(error, HEWN_CANCELLED, "cancelled during evaluate");
         if (result == HEWN_OK)
-            result = eval_points(field, request->gradient, points, count, values, error);
+            result = eval_points(on, request->gradient, points, count, values, error);
         if (result != HEWN_OK)
             break;
         print_values(rows, request->gradient, values, count);
@@ -192,15 +235,6 @@ static hewn_result eval_lines(const eval_request *request, const hewn_field *fie
     }
     hewn_free(points);
     hewn_free(values);
-    return result;
-}
-
-static hewn_result eval_file(const eval_request *request, const hewn_field *field, hewn_rows *rows, hewn_error *error)
-{
-    hewn_number_lines *lines;
-    HEWN_TRY(hewn_number_lines_open(request->points, 3, "a point is three numbers, x y z", &lines, error));
-    hewn_result result = eval_lines(request, field, lines, rows, error);
-    hewn_number_lines_close(&lines);
     return result;
 }
 
@@ -229,10 +263,13 @@ static hewn_result choose_box(const eval_request *request, const hewn_scene *sce
     return HEWN_OK;
 }
 
-static void print_plane(const eval_request *request, const hewn_picture *picture, hewn_rows *rows)
+static hewn_result print_plane(const eval_request *request, const hewn_picture *picture, hewn_rows *rows,
+                               hewn_error *error)
 {
     bool colour = picture->kind == HEWN_PICTURE_COLOUR;
-    for (uint32_t y = picture->height; y-- > 0;) /* a picture has the highest row first */
+    for (uint32_t y = picture->height; y-- > 0;) { /* a picture has the highest row first */
+        if (hewn_signals_cancelled())
+            return hewn_fail(error, HEWN_CANCELLED, "cancelled during evaluate");
         for (uint32_t x = 0; x < picture->width; x++) {
             size_t at = (size_t)y * picture->width + x;
             if (request->inside)
@@ -241,6 +278,21 @@ static void print_plane(const eval_request *request, const hewn_picture *picture
                 hewn_rows_number(rows, (double)picture->values[at], true);
             hewn_rows_end(rows);
         }
+        HEWN_TRY(hewn_rows_flush(rows, error));
+    }
+    return HEWN_OK;
+}
+
+/* Progress of one of many planes as a part of the whole. */
+typedef struct plane_progress {
+    const hewn_progress *whole;
+    uint32_t plane, planes;
+} plane_progress;
+
+static bool report_plane(void *user, const char *stage, double fraction)
+{
+    const plane_progress *own = user;
+    return !own->whole->report || own->whole->report(own->whole->user, stage, (own->plane + fraction) / own->planes);
 }
 
 static hewn_result eval_grid(const eval_request *request, const hewn_field *field, const hewn_progress *progress,
@@ -248,14 +300,15 @@ static hewn_result eval_grid(const eval_request *request, const hewn_field *fiel
 {
     uint32_t planes = request->grid[2] ? request->grid[2] : 1;
     hewn_plane_desc desc = {.width = request->grid[0], .height = request->grid[1], .values = !request->inside};
-    desc.progress = planes == 1 ? progress : NULL;
+    plane_progress part = {.whole = progress, .planes = planes};
+    const hewn_progress parts = {report_plane, &part};
+    desc.progress = &parts;
     memcpy(desc.lo, report->box.lo, sizeof desc.lo);
     memcpy(desc.hi, report->box.hi, sizeof desc.hi);
     for (uint32_t k = 0; k < planes; k++) {
         hewn_picture picture;
         hewn_plane_stats stats;
-        if (planes > 1 && progress->report && !progress->report(progress->user, "evaluate", (double)k / planes))
-            return hewn_fail(error, HEWN_CANCELLED, "cancelled during evaluate");
+        part.plane = k;
         double side = report->box.hi[2] - report->box.lo[2], began = hewn_clock_now();
         desc.z = request->grid[2] ? report->box.lo[2] + side * (k + 0.5) / planes : report->box.lo[2];
         HEWN_TRY(hewn_render_plane(field, hewn_field_root(field), &desc, &picture, &stats, error));
@@ -264,11 +317,49 @@ static hewn_result eval_grid(const eval_request *request, const hewn_field *fiel
         report->plane.operations_a_pixel += stats.operations_a_pixel / planes;
         report->plane.bounds_a_pixel += stats.bounds_a_pixel / planes;
         report->plane.filled += stats.filled / planes;
-        print_plane(request, &picture, rows);
+        hewn_result result = print_plane(request, &picture, rows, error);
         hewn_picture_destroy(&picture);
-        HEWN_TRY(hewn_rows_flush(rows, error));
+        HEWN_TRY(result);
     }
     return HEWN_OK;
+}
+
+/* Row after row, as many points as fit into a batch. */
+static hewn_result eval_grid_on_device(const eval_request *request, const computing *on, const hewn_progress *progress,
+                                       hewn_rows *rows, grid_report *report, hewn_error *error)
+{
+    const uint32_t n[3] = {request->grid[0], request->grid[1], request->grid[2] ? request->grid[2] : 1};
+    const uint64_t all = (uint64_t)n[0] * n[1] * n[2];
+    double *points = hewn_alloc(DEVICE_BATCH, 3 * sizeof *points), *values = hewn_alloc(DEVICE_BATCH, sizeof *values);
+    hewn_result result = points && values ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for points");
+    double began = hewn_clock_now();
+    for (uint64_t first = 0; first < all && result == HEWN_OK; first += DEVICE_BATCH) {
+        size_t count = all - first < DEVICE_BATCH ? (size_t)(all - first) : DEVICE_BATCH;
+        result = hewn_progress_report(progress, "evaluate", (double)first / (double)all, error);
+        for (size_t i = 0; i < count && result == HEWN_OK; i++) {
+            const uint64_t at[3] = {(first + i) % n[0], (first + i) / n[0] % n[1], (first + i) / n[0] / n[1]};
+            for (int axis = 0; axis < 3; axis++) {
+                double lo = report->box.lo[axis], side = report->box.hi[axis] - lo;
+                bool flat = axis == 2 && request->grid[2] == 0;
+                points[3 * i + (size_t)axis] = flat ? lo : lo + side * (((double)at[axis] + 0.5) / n[axis]);
+            }
+        }
+        if (result == HEWN_OK)
+            result = hewn_evaluator_values(on->evaluator, points, count, values, error);
+        for (size_t i = 0; i < count && result == HEWN_OK; i++) {
+            if (request->inside)
+                hewn_rows_word(rows, values[i] < 0 ? "1" : "0");
+            else
+                hewn_rows_number(rows, values[i], true);
+            hewn_rows_end(rows);
+        }
+        if (result == HEWN_OK)
+            result = hewn_rows_flush(rows, error);
+    }
+    report->seconds = hewn_clock_now() - began;
+    hewn_free(points);
+    hewn_free(values);
+    return result;
 }
 
 static hewn_result write_report(const eval_request *request, const grid_report *report, hewn_error *error)
@@ -308,6 +399,10 @@ static hewn_result write_report(const eval_request *request, const grid_report *
 static void print_summary(const grid_report *report)
 {
     const hewn_plane_stats *plane = &report->plane;
+    if (plane->operations == 0) { /* a device does not tell */
+        fprintf(stderr, "%.3f s\n", report->seconds);
+        return;
+    }
     double all = (double)plane->operations, both = plane->operations_a_pixel + plane->bounds_a_pixel;
     fprintf(stderr,
             "%.1f of %llu operations a sample (%.2f %%), with those of bounds %.1f (%.2f %%); bounds decided %.0f %%; "
@@ -325,17 +420,34 @@ static hewn_result evaluate(const eval_request *request, const hewn_scene *scene
     const hewn_field *field = hewn_scene_field(scene);
     grid_report report = {0};
     hewn_rows rows;
+    hewn_number_lines *lines = NULL;
+    computing on;
+    hewn_signals_end_at_once(true, NULL);
     if (request->grid[0])
         HEWN_TRY(choose_box(request, scene, &report.box, error));
-    HEWN_TRY(hewn_rows_open(request->output, &rows, error));
-    hewn_result result = HEWN_OK;
-    if (request->grid[0])
-        result = eval_grid(request, field, progress, &rows, &report, error);
-    else if (request->points)
-        result = eval_file(request, field, &rows, error);
-    else
-        result = eval_given(request, field, &rows, error);
-    result = hewn_rows_close(&rows, result, error);
+    if (request->points)
+        HEWN_TRY(hewn_number_lines_open(request->points, 3, "a point is three numbers, x y z", &lines, error));
+    hewn_result result = begin_computing(request, field, &on, error);
+    hewn_signals_end_at_once(false, NULL);
+    if (result == HEWN_OK)
+        result = hewn_rows_open(request->output, &rows, error);
+    if (result == HEWN_OK) {
+        hewn_signals_end_at_once(true, hewn_output_temporary(rows.output));
+        if (on.evaluator && request->grid[0])
+            result = eval_grid_on_device(request, &on, progress, &rows, &report, error);
+        else if (request->grid[0])
+            result = eval_grid(request, field, progress, &rows, &report, error);
+        else if (request->points)
+            result = eval_lines(request, &on, lines, &rows, error);
+        else
+            result = eval_given(request, &on, &rows, error);
+        result = end_computing(&on, result, error);
+        hewn_signals_end_at_once(false, NULL);
+        result = hewn_rows_close(&rows, result, error);
+    } else {
+        end_computing(&on, result, error);
+    }
+    hewn_number_lines_close(&lines);
     if (result == HEWN_OK && request->report)
         result = write_report(request, &report, error);
     hewn_progress_end();
@@ -372,7 +484,7 @@ const hewn_command hewn_command_eval = {
     .about = "Prints the value of a scene's field (.lua, .vm) at points, a line each in their\n"
              "order: for shapes the distance from the surface, below 0 inside (docs/scene.md\n"
              "tells how exact). At points values are computed in double precision, on grids\n"
-             "in single, by as few operations as bounds leave.\n",
+             "in single, by as few operations as bounds leave; with --device in single.\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .after = "Examples:\n"

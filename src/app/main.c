@@ -9,7 +9,7 @@
 const hewn_command *const hewn_commands[] = {
     &hewn_command_mesh,   &hewn_command_info,      &hewn_command_check,    &hewn_command_repair, &hewn_command_convert,
     &hewn_command_smooth, &hewn_command_subdivide, &hewn_command_simplify, &hewn_command_lod,    &hewn_command_voxelize,
-    &hewn_command_render, &hewn_command_eval,      &hewn_command_query,    &hewn_command_devices};
+    &hewn_command_render, &hewn_command_atlas,     &hewn_command_eval,     &hewn_command_query,  &hewn_command_devices};
 const size_t hewn_command_count = sizeof hewn_commands / sizeof *hewn_commands;
 
 static double started;

@@ -1,20 +1,25 @@
 #include "app/number_lines.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include "app/app.h"
 #include "base/alloc.h"
 #include "base/error.h"
 
 enum { LONGEST = 4096 };
 
 struct hewn_number_lines {
-    FILE *file;
-    const char *path;
+    int file; /* below 0: none */
+    char buffer[1 << 16];
+    size_t used, filled;
     const char *name; /* for messages */
     const char *what;
     uint32_t width;
@@ -31,13 +36,15 @@ hewn_result hewn_number_lines_open(const char *path, uint32_t width, const char 
     if (!*out)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a file");
     bool standard = strcmp(path, "-") == 0;
-    **out = (hewn_number_lines){.path = path, .name = standard ? "standard input" : path, .what = what, .width = width};
-    (*out)->file = standard ? stdin : fopen(path, "rb");
+    (*out)->name = standard ? "standard input" : path;
+    (*out)->what = what;
+    (*out)->width = width;
+    (*out)->file = standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
     struct stat status;
     hewn_result result = HEWN_OK;
-    if (!(*out)->file)
+    if ((*out)->file < 0)
         result = hewn_fail_at(error, HEWN_IO, path, 0, "cannot open: %s", strerror(errno));
-    else if (fstat(fileno((*out)->file), &status) == 0 && S_ISDIR(status.st_mode))
+    else if (fstat((*out)->file, &status) == 0 && S_ISDIR(status.st_mode))
         result = hewn_fail_at(error, HEWN_IO, path, 0, "it is a folder");
     if (result != HEWN_OK)
         hewn_number_lines_close(out);
@@ -46,8 +53,8 @@ hewn_result hewn_number_lines_open(const char *path, uint32_t width, const char 
 
 void hewn_number_lines_close(hewn_number_lines **lines)
 {
-    if (*lines && (*lines)->file && (*lines)->file != stdin)
-        fclose((*lines)->file);
+    if (*lines && (*lines)->file >= 0 && (*lines)->file != STDIN_FILENO)
+        close((*lines)->file);
     if (*lines)
         hewn_free((*lines)->places);
     hewn_free(*lines);
@@ -61,21 +68,46 @@ static hewn_result refuse(const hewn_number_lines *lines, const char *format, co
     return hewn_fail_at(error, HEWN_BAD_INPUT, lines->name, lines->line, "%s; %s", why, lines->what);
 }
 
+/* Reads on; a pipe through which nothing comes keeps nobody who wants to stop. `*more` is false at the end. */
+static hewn_result fill(hewn_number_lines *lines, bool *more, hewn_error *error)
+{
+    struct pollfd wait = {.fd = lines->file, .events = POLLIN};
+    int ready;
+    do {
+        ready = poll(&wait, 1, 50);
+        if (hewn_signals_cancelled())
+            return hewn_fail(error, HEWN_CANCELLED, "cancelled reading %s", lines->name);
+    } while (ready == 0 || (ready < 0 && errno == EINTR));
+    ssize_t got;
+    do
+        got = read(lines->file, lines->buffer, sizeof lines->buffer);
+    while (got < 0 && errno == EINTR);
+    if (got < 0)
+        return hewn_fail_at(error, HEWN_IO, lines->name, 0, "cannot read: %s", strerror(errno));
+    lines->used = 0;
+    lines->filled = (size_t)got;
+    *more = got > 0;
+    return HEWN_OK;
+}
+
 /* A line without its end; *length is negative where the file has none left. */
 static hewn_result next_line(hewn_number_lines *lines, long *length, hewn_error *error)
 {
     long count = 0;
-    int c;
+    bool more = true;
     lines->line++;
-    while ((c = getc_unlocked(lines->file)) != EOF && c != '\n') {
+    for (;;) {
+        if (lines->used == lines->filled)
+            HEWN_TRY(fill(lines, &more, error));
+        if (!more || lines->buffer[lines->used] == '\n')
+            break;
         if (count == LONGEST)
             return refuse(lines, "the line is longer than 4,096 characters%s", "", error);
-        lines->text[count++] = (char)c;
+        lines->text[count++] = lines->buffer[lines->used++];
     }
-    if (c == EOF && ferror(lines->file))
-        return hewn_fail_at(error, HEWN_IO, lines->name, 0, "cannot read: %s", strerror(errno));
+    lines->used += more;
     lines->text[count] = '\0';
-    *length = c == EOF && count == 0 ? -1 : count;
+    *length = !more && count == 0 ? -1 : count;
     return HEWN_OK;
 }
 

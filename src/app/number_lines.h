@@ -14,7 +14,8 @@ hewn_result hewn_number_lines_open(const char *path, uint32_t width, const char 
 void hewn_number_lines_close(hewn_number_lines **lines);
 
 /* The next rows, at most `most`; *count is less where the file ends. HEWN_BAD_INPUT with file and line for what is no
- * such line (also: a number that is not finite, a line of more than 4,096 characters), HEWN_IO. */
+ * such line (also: a number that is not finite, a line of more than 4,096 characters), HEWN_IO; HEWN_CANCELLED after a
+ * signal, also where it waits for a pipe. */
 hewn_result hewn_number_lines_read(hewn_number_lines *lines, double *rows, size_t most, size_t *count,
                                    hewn_error *error);
 

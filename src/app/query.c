@@ -12,6 +12,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "pipeline/domain.h"
+#include "pipeline/paths.h"
 
 enum { BATCH = 1 << 14 };
 
@@ -187,8 +188,16 @@ static hewn_result ask_all(const query_request *request, hewn_query *query, hewn
     return result;
 }
 
-static hewn_result ask_lines(const query_request *request, const hewn_scene *scene, hewn_rows *out, hewn_error *error)
+/* Everything that takes its time and writes nothing is done: the file is opened. */
+static hewn_result open_rows(const query_request *request, hewn_rows *rows, hewn_error *error)
 {
+    hewn_signals_end_at_once(false, NULL);
+    return hewn_rows_open(request->output, rows, error);
+}
+
+static hewn_result ask_lines(const query_request *request, const hewn_scene *scene, hewn_error *error)
+{
+    hewn_rows rows;
     hewn_device *device = NULL;
     hewn_query *query = NULL;
     hewn_number_lines *lines = NULL;
@@ -204,9 +213,15 @@ static hewn_result ask_lines(const query_request *request, const hewn_scene *sce
     if (result == HEWN_OK)
         result = open_query(request, scene, device, &query, error);
     if (result == HEWN_OK)
-        result = ask_all(request, query, lines, out, error);
-    if (result == HEWN_OK && device && hewn_device_message_count(device) > 0)
-        result = hewn_fail(error, HEWN_DEVICE_LOST, "the validation layer gave messages");
+        result = open_rows(request, &rows, error);
+    if (result == HEWN_OK) {
+        hewn_signals_end_at_once(true, hewn_output_temporary(rows.output));
+        result = ask_all(request, query, lines, &rows, error);
+        hewn_signals_end_at_once(false, NULL);
+        if (result == HEWN_OK && device && hewn_device_message_count(device) > 0)
+            result = hewn_fail(error, HEWN_DEVICE_LOST, "the validation layer gave messages");
+        result = hewn_rows_close(&rows, result, error);
+    }
     hewn_query_destroy(&query);
     hewn_device_destroy(&device);
     hewn_number_lines_close(&lines);
@@ -230,9 +245,9 @@ static hewn_result measure(const query_request *request, const hewn_scene *scene
     return result;
 }
 
-static hewn_result ask_clearance(const query_request *request, const hewn_scene *scene, hewn_rows *rows,
-                                 hewn_error *error)
+static hewn_result ask_clearance(const query_request *request, const hewn_scene *scene, hewn_error *error)
 {
+    hewn_rows own, *rows = &own;
     const hewn_scene_desc desc = {.path = request->other, .allow_path = request->scene.desc.allow_path};
     hewn_scene *other;
     hewn_clearance found;
@@ -244,6 +259,7 @@ static hewn_result ask_clearance(const query_request *request, const hewn_scene 
         result = measure(request, (const hewn_scene *[2]){scene, other}, &found, error);
     hewn_scene_destroy(&other);
     HEWN_TRY(result);
+    HEWN_TRY(open_rows(request, rows, error));
     hewn_rows_word(rows, "# state sure low high ax ay az bx by bz");
     hewn_rows_end(rows);
     hewn_rows_word(rows, !found.found ? "nothing" : found.overlap ? "overlap" : "apart");
@@ -253,7 +269,7 @@ static hewn_result ask_clearance(const query_request *request, const hewn_scene 
     print_triple(rows, found.points[0]);
     print_triple(rows, found.points[1]);
     hewn_rows_end(rows);
-    return HEWN_OK;
+    return hewn_rows_close(rows, HEWN_OK, error);
 }
 
 /* --- running --------------------------------------------------------------------------------------------------------
@@ -261,16 +277,15 @@ static hewn_result ask_clearance(const query_request *request, const hewn_scene 
 
 static hewn_result answer(query_request *request, const hewn_scene *scene, hewn_error *error)
 {
-    hewn_rows rows;
-    HEWN_TRY(hewn_rows_open(request->output, &rows, error));
+    HEWN_TRY(hewn_output_check(request->output ? request->output : "-", error));
     hewn_signals_catch();
+    hewn_signals_end_at_once(true, NULL);
     hewn_progress progress = hewn_progress_begin(request->quiet);
     request->desc.progress = &progress;
-    hewn_result result =
-        request->other ? ask_clearance(request, scene, &rows, error) : ask_lines(request, scene, &rows, error);
+    hewn_result result = request->other ? ask_clearance(request, scene, error) : ask_lines(request, scene, error);
     hewn_progress_end();
     request->desc.progress = NULL;
-    return hewn_rows_close(&rows, result, error);
+    return result;
 }
 
 static int run(const hewn_command *command, const hewn_arguments *arguments)

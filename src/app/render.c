@@ -245,6 +245,7 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
     hewn_result result = read_request(arguments, &request, &error);
     if (result == HEWN_OK) {
         hewn_signals_catch();
+        hewn_signals_end_at_once(true, NULL);
         result =
             request.sweep.count > 0 ? render_sweep(&request, &error) : render_once(&request, hewn_started(), &error);
     }

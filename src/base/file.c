@@ -261,7 +261,12 @@ hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t len
     return HEWN_OK;
 }
 
-static hewn_result finish(hewn_output *output, hewn_error *error)
+const char *hewn_output_temporary(const hewn_output *output)
+{
+    return output->temporary;
+}
+
+hewn_result hewn_output_settle(hewn_output *output, hewn_error *error)
 {
     if (output->status != HEWN_OK)
         return repeat_failure(output, error);
@@ -272,6 +277,12 @@ static hewn_result finish(hewn_output *output, hewn_error *error)
         if (close(file) != 0)
             return fail_output(output, "cannot write", errno, error);
     }
+    return HEWN_OK;
+}
+
+static hewn_result finish(hewn_output *output, hewn_error *error)
+{
+    HEWN_TRY(hewn_output_settle(output, error));
     if (output->temporary) {
         if (rename(output->temporary, output->target) != 0)
             return fail_output(output, "cannot rename the finished file", errno, error);

@@ -20,6 +20,14 @@ hewn_result hewn_output_create(const char *path, hewn_output **out, hewn_error *
 /* Appends bytes. An error (a full disk) is returned at once and again by every later call. */
 hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t length, hewn_error *error);
 
+/* The file that the output is until it is finished, for whoever has to end in a hurry and remove it; NULL where there
+ * is none. Valid as long as the output. */
+const char *hewn_output_temporary(const hewn_output *output);
+
+/* Hands everything to the system and closes the file, so that of what may still fail only the renaming is left: for
+ * files that belong together. Nothing can be written any more. */
+hewn_result hewn_output_settle(hewn_output *output, hewn_error *error);
+
 /* Flushes, renames over `path` and destroys the output; on failure nothing is left behind. */
 hewn_result hewn_output_finish(hewn_output **output, hewn_error *error);
 

@@ -20,7 +20,7 @@ hewn_result hewn_grid_add(hewn_grid_sides *sides, hewn_grid_point a, hewn_grid_p
     void *items = sides->items;
     HEWN_TRY(hewn_reserve(&items, &sides->room, sides->count + 1, sizeof *sides->items, error));
     sides->items = items;
-    sides->items[sides->count++] = (hewn_grid_side){a, b, 1};
+    sides->items[sides->count++] = (hewn_grid_side){a, b, 1, sides->tag};
     return HEWN_OK;
 }
 
@@ -59,6 +59,7 @@ hewn_result hewn_grid_add_curve(hewn_grid_sides *sides, unsigned degree, const d
                     level[k][axis] += t * (level[k + 1][axis] - level[k][axis]);
         hewn_grid_point next = rounded(i == chords ? points[degree] : level[0]);
         HEWN_TRY(hewn_grid_add(sides, last, next, error));
+        sides->tag++;
         last = next;
     }
     return HEWN_OK;

@@ -15,11 +15,13 @@ typedef struct hewn_grid_point {
 typedef struct hewn_side_on_grid {
     hewn_grid_point a, b;
     int64_t winding;
+    uint32_t tag; /* where it comes from; its parts keep that */
 } hewn_grid_side;
 
 typedef struct hewn_grid_sides {
     hewn_grid_side *items;
     size_t count, room;
+    uint32_t tag; /* of sides that are added */
 } hewn_grid_sides;
 
 /* Above 0 where c lies left of the line from a to b. */
@@ -36,7 +38,8 @@ static inline bool hewn_grid_same(hewn_grid_point a, hewn_grid_point b)
 /* Adds a side; one of no length is left out. HEWN_LIMIT for a coordinate too far out, HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_grid_add(hewn_grid_sides *sides, hewn_grid_point a, hewn_grid_point b, hewn_error *error);
 
-/* Adds chords of a Bezier curve of degree 1 to 3, given by degree + 1 points in grid units, each within `off` of it. */
+/* Adds chords of a Bezier curve of degree 1 to 3, given by degree + 1 points in grid units, each within `off` of it:
+ * equal parts of its parameter. `tag` is one more for each chord, also for those that have no length. */
 hewn_result hewn_grid_add_curve(hewn_grid_sides *sides, unsigned degree, const double (*points)[2], double off,
                                 hewn_error *error);
 

@@ -136,11 +136,11 @@ const char *hewn_font_name(const hewn_font *font)
 /* --- outlines ------------------------------------------------------------------------------------------------------
  */
 
-/* An outline on its way from FreeType. Where `result` is a failure nothing more is added. */
+/* An outline on its way from FreeType. Where `result` is a failure nothing more is handed on. */
 typedef struct pen {
-    hewn_grid_sides *sides;
+    hewn_take_curve *take;
+    void *user;
     double scale, move[2], first[2], at[2];
-    double off;
     hewn_result result;
     hewn_error *error;
 } pen;
@@ -154,7 +154,7 @@ static void place(const pen *own, const FT_Vector *from, double to[2])
 static int draw(pen *own, unsigned degree, const double (*points)[2])
 {
     if (own->result == HEWN_OK)
-        own->result = hewn_grid_add_curve(own->sides, degree, points, own->off, own->error);
+        own->result = own->take(own->user, degree, points, own->error);
     memcpy(own->at, points[degree], sizeof own->at);
     return own->result == HEWN_OK ? 0 : FT_Err_Invalid_Outline;
 }
@@ -198,8 +198,8 @@ static int cubic_to(const FT_Vector *one, const FT_Vector *two, const FT_Vector 
     return curve_to(one, two, to, 3, user);
 }
 
-hewn_result hewn_font_add_glyph(hewn_font *font, uint32_t glyph, int64_t x, int64_t y, hewn_grid_sides *sides,
-                                hewn_error *error)
+hewn_result hewn_font_walk(hewn_font *font, uint32_t glyph, double scale, const double move[2], hewn_take_curve *take,
+                           void *user, hewn_error *error)
 {
     static const FT_Outline_Funcs calls = {
         .move_to = move_to, .line_to = line_to, .conic_to = conic_to, .cubic_to = cubic_to};
@@ -210,14 +210,29 @@ hewn_result hewn_font_add_glyph(hewn_font *font, uint32_t glyph, int64_t x, int6
         return fail(code, what, error);
     if (font->face->glyph->format != FT_GLYPH_FORMAT_OUTLINE)
         return hewn_fail(error, HEWN_BAD_INPUT, "%s is no outline", what);
-    pen own = {.sides = sides,
-               .scale = font->grid,
-               .move = {(double)x, (double)y},
-               .off = font->units * font->grid / 4096,
-               .error = error};
+    pen own = {.take = take, .user = user, .scale = scale, .move = {move[0], move[1]}, .error = error};
     code = FT_Outline_Decompose(&font->face->glyph->outline, &calls, &own);
     if (code == 0)
         close_contour(&own);
     HEWN_TRY(own.result);
     return code ? fail(code, what, error) : HEWN_OK;
+}
+
+/* Where chords go. */
+typedef struct chords {
+    hewn_grid_sides *sides;
+    double off;
+} chords;
+
+static hewn_result add_chords(void *user, unsigned degree, const double (*points)[2], hewn_error *error)
+{
+    const chords *own = user;
+    return hewn_grid_add_curve(own->sides, degree, points, own->off, error);
+}
+
+hewn_result hewn_font_add_glyph(hewn_font *font, uint32_t glyph, int64_t x, int64_t y, hewn_grid_sides *sides,
+                                hewn_error *error)
+{
+    chords own = {sides, font->units * font->grid / 4096};
+    return hewn_font_walk(font, glyph, font->grid, (const double[2]){(double)x, (double)y}, add_chords, &own, error);
 }

@@ -150,6 +150,7 @@ static hewn_result apply_cuts(hewn_grid_sides *sides, const cuts *all, hewn_erro
         size_t which = order[i].cut.side;
         hewn_grid_point last, end = sides->items[which].b;
         int64_t winding = sides->items[which].winding;
+        sides->tag = sides->items[which].tag;
         sides->items[which].b = order[i].cut.at; /* the first part stays where it is; it may have no length */
         for (last = order[i++].cut.at; i <= all->count && result == HEWN_OK; i++) {
             bool more = i < all->count && order[i].cut.side == which;
@@ -177,7 +178,14 @@ static int by_ends(const void *left, const void *right)
     const hewn_grid_side *p = left, *q = right;
     if (!hewn_grid_same(p->a, q->a))
         return is_smaller(p->a, q->a) ? -1 : 1;
-    return hewn_grid_same(p->b, q->b) ? 0 : is_smaller(p->b, q->b) ? -1 : 1;
+    if (!hewn_grid_same(p->b, q->b))
+        return is_smaller(p->b, q->b) ? -1 : 1;
+    return (p->tag > q->tag) - (p->tag < q->tag); /* so that the order does not depend on that of before */
+}
+
+static bool have_same_ends(const hewn_grid_side *p, const hewn_grid_side *q)
+{
+    return hewn_grid_same(p->a, q->a) && hewn_grid_same(p->b, q->b);
 }
 
 /* Sides between the same two points become one; what cancels out goes. */
@@ -187,13 +195,13 @@ static void merge(hewn_grid_sides *sides)
     for (size_t i = 0; i < sides->count; i++) {
         hewn_grid_side *side = &sides->items[i];
         if (is_smaller(side->b, side->a))
-            *side = (hewn_grid_side){side->b, side->a, -side->winding};
+            *side = (hewn_grid_side){side->b, side->a, -side->winding, side->tag};
     }
     if (sides->count > 1)
         qsort(sides->items, sides->count, sizeof *sides->items, by_ends);
     for (size_t i = 0; i < sides->count;) {
         hewn_grid_side sum = sides->items[i++];
-        for (; i < sides->count && by_ends(&sum, &sides->items[i]) == 0; i++)
+        for (; i < sides->count && have_same_ends(&sum, &sides->items[i]); i++)
             sum.winding += sides->items[i].winding;
         if (sum.winding != 0 && !hewn_grid_same(sum.a, sum.b))
             sides->items[count++] = sum;
@@ -209,7 +217,7 @@ static hewn_grid_side turned(const hewn_grid_side *side, bool quarter)
 {
     if (!quarter)
         return *side;
-    return (hewn_grid_side){{-side->a.y, side->a.x}, {-side->b.y, side->b.x}, side->winding};
+    return (hewn_grid_side){{-side->a.y, side->a.x}, {-side->b.y, side->b.x}, side->winding, side->tag};
 }
 
 /* How often the polygons wind around what lies left of the middle of side `i`: all the sides that a ray from far left
@@ -243,7 +251,7 @@ static void keep_borders(const hewn_grid_sides *sides, hewn_grid_side *out, size
         if ((left != 0) == (right != 0))
             continue;
         bool keeps = (left != 0) == rises; /* the inside comes to lie on the left */
-        out[(*count)++] = (hewn_grid_side){keeps ? side->a : side->b, keeps ? side->b : side->a, 1};
+        out[(*count)++] = (hewn_grid_side){keeps ? side->a : side->b, keeps ? side->b : side->a, 1, side->tag};
     }
 }
 
@@ -270,6 +278,6 @@ hewn_result hewn_grid_nonzero(hewn_grid_sides *sides, size_t most_sides, hewn_er
     size_t count;
     keep_borders(sides, kept, &count);
     hewn_free(sides->items);
-    *sides = (hewn_grid_sides){kept, count, sides->count};
+    *sides = (hewn_grid_sides){kept, count, sides->count, 0};
     return HEWN_OK;
 }

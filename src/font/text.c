@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "field/internal.h"
 #include "font/font.h"
+#include "font/utf8.h"
 
 /* Work grows with the square of a group's sides. */
 enum { TEXT_LIMIT = 10000, GROUP_SIDES = 8192, ALL_SIDES = 1 << 18 };
@@ -31,33 +32,12 @@ typedef struct setting {
     int64_t baseline;
 } setting;
 
-/* --- UTF-8 ---------------------------------------------------------------------------------------------------------
- */
-
-/* One character's bytes, 0 for what is no UTF-8 (RFC 3629). */
-static size_t character(const char *text, uint32_t *out)
-{
-    const unsigned char *at = (const unsigned char *)text;
-    size_t length = at[0] < 0x80 ? 1 : at[0] < 0xC2 ? 0 : at[0] < 0xE0 ? 2 : at[0] < 0xF0 ? 3 : at[0] < 0xF5 ? 4 : 0;
-    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
-    uint32_t value = length == 1 ? at[0] : at[0] & (0x7Fu >> length);
-    for (size_t i = 1; i < length; i++) {
-        if ((at[i] & 0xC0) != 0x80)
-            return 0;
-        value = value << 6 | (at[i] & 0x3Fu);
-    }
-    if (length == 0 || value < least[length] || value > 0x10FFFF || (value >= 0xD800 && value < 0xE000))
-        return 0;
-    *out = value;
-    return length;
-}
-
 static hewn_result check_text(const char *text, hewn_error *error)
 {
     size_t count = 0;
     for (const char *at = text; *at; count++) {
         uint32_t value;
-        size_t length = character(at, &value);
+        size_t length = hewn_utf8_next(at, &value);
         if (length == 0)
             return hewn_fail(error, HEWN_BAD_INPUT, "byte %zu of the text is not UTF-8", (size_t)(at - text) + 1);
         if (value < 0x20 && value != '\n' && value != '\t' && value != '\r')
@@ -76,7 +56,7 @@ static hewn_result check_text(const char *text, hewn_error *error)
 static hewn_result missing(const char *line, uint32_t cluster, hewn_error *error)
 {
     uint32_t value = 0;
-    size_t length = character(line + cluster, &value);
+    size_t length = hewn_utf8_next(line + cluster, &value);
     return hewn_fail(error, HEWN_BAD_INPUT, "the font has no glyph for '%.*s' (U+%04X)", (int)length, line + cluster,
                      value);
 }

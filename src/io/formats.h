@@ -14,6 +14,7 @@ typedef struct hewn_source {
     const char *name; /* for messages */
     const char *path; /* where other files are looked for; NULL: nowhere */
     const hewn_progress *progress;
+    bool base_colors; /* as of hewn_read_desc */
 } hewn_source;
 
 /* Makes a model of a source and keeps nothing of it; `*out` is zero after an error. */

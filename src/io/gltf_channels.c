@@ -424,6 +424,33 @@ static hewn_result add_materials_if_named(hewn_gltf_scene *scene, hewn_error *er
     return result;
 }
 
+static hewn_result add_base_colors(hewn_gltf_scene *scene, hewn_error *error)
+{
+    const hewn_gltf *gltf = &scene->data.gltf;
+    static const float white[4] = {1, 1, 1, 1};
+    static const hewn_attribute_info info = {"color", HEWN_DOMAIN_FACE, HEWN_SCALAR_FLOAT, 4};
+    hewn_channel *channel;
+    bool any = false;
+    for (size_t p = 0; p < scene->part_count; p++) {
+        int material = gltf->primitives[scene->parts[p].primitive].material;
+        if (material >= 0 && (size_t)material < gltf->material_count)
+            any = any || memcmp(gltf->colors[material], white, sizeof white) != 0;
+    }
+    if (!any)
+        return HEWN_OK;
+    HEWN_TRY(hewn_gltf_spend(&scene->data, scene->builder.model.face_count, sizeof white, error));
+    HEWN_TRY(hewn_model_add_channel(&scene->builder.model, &info, &channel, error));
+    for (size_t p = 0; p < scene->part_count; p++) {
+        const hewn_gltf_part *part = &scene->parts[p];
+        int material = gltf->primitives[part->primitive].material;
+        bool has = material >= 0 && (size_t)material < gltf->material_count;
+        for (uint64_t face = 0; face < part->face_count; face++)
+            memcpy((float *)channel->values + 4 * (part->first_face + face), has ? gltf->colors[material] : white,
+                   sizeof white);
+    }
+    return HEWN_OK;
+}
+
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
 static bool has_channel(const hewn_model *model, const char *name)
@@ -468,5 +495,7 @@ hewn_result hewn_gltf_add_channels(hewn_gltf_scene *scene, hewn_error *error)
         result = add_materials_if_named(scene, error);
     if (result == HEWN_OK && scene->instance_count > 1)
         result = add_objects(scene, error);
+    if (result == HEWN_OK && scene->base_colors)
+        result = add_base_colors(scene, error);
     return result;
 }

@@ -307,7 +307,8 @@ hewn_result hewn_gltf_read(const hewn_source *source, hewn_model *out, hewn_erro
 {
     *out = (hewn_model){0};
     hewn_gltf_scene scene = {.data = {.name = source->name, .path = source->path, .length = source->length},
-                             .progress = source->progress};
+                             .progress = source->progress,
+                             .base_colors = source->base_colors};
     container json = {0};
     HEWN_TRY(open_container(&scene, source->bytes, source->length, &json, error));
     HEWN_TRY(hewn_gltf_parse(json.json, json.json_length, source->name, &scene.data.gltf, error));

@@ -31,6 +31,7 @@ typedef struct hewn_gltf_scene {
     hewn_gltf_data data;
     hewn_builder builder;
     const hewn_progress *progress;
+    bool base_colors; /* are wanted */
     hewn_gltf_instance *instances;
     hewn_gltf_set *sets;
     hewn_gltf_part *parts;

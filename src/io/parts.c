@@ -79,7 +79,8 @@ hewn_result hewn_model_read_parts(const char *path, const hewn_read_desc *desc, 
     if (!read)
         return hewn_fail_at(error, HEWN_LIMIT, path, 0, "a file of this format cannot be read in parts");
     HEWN_TRY(map(path, &file, error));
-    const hewn_source source = {file.bytes, file.length, path, path, &progress};
+    const hewn_source source = {
+        .bytes = file.bytes, .length = file.length, .name = path, .path = path, .progress = &progress};
     const hewn_result result =
         hewn_is_packed(file.bytes, file.length)
             ? hewn_fail_at(error, HEWN_LIMIT, path, 0, "a compressed file cannot be read in parts; unpack it first")

@@ -7,8 +7,8 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "hewn/picture.h"
+#include "io/png_write.h"
 
 typedef struct writing {
     hewn_output *output;
@@ -76,46 +76,71 @@ static void write_range(png_structp png, png_infop info, const hewn_picture *pic
     png_set_text(png, info, texts, 2);
 }
 
+/* What is written: a picture, or bytes as they are. */
+typedef struct image {
+    uint32_t width, height;
+    const hewn_picture *picture; /* or NULL */
+    const uint8_t *bytes;
+    uint32_t channels;
+} image;
+
+static int colour_type(const image *own)
+{
+    bool scalar = own->picture ? own->picture->kind == HEWN_PICTURE_SCALAR : own->channels == 1;
+    return scalar ? PNG_COLOR_TYPE_GRAY : own->channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB;
+}
+
 /* libpng leaves by longjmp; nothing here is changed after setjmp that is read afterwards. */
-static bool write_png(const hewn_picture *picture, png_structp png, png_infop info, uint8_t *row)
+static bool write_png(const image *own, png_structp png, png_infop info, uint8_t *row)
 {
     if (setjmp(png_jmpbuf(png)))
         return false;
-    bool scalar = picture->kind == HEWN_PICTURE_SCALAR;
+    const hewn_picture *picture = own->picture;
+    bool scalar = picture && picture->kind == HEWN_PICTURE_SCALAR;
     png_set_user_limits(png, 0x7FFFFFFF, 0x7FFFFFFF);
-    png_set_IHDR(png, info, picture->width, picture->height, scalar ? 16 : 8,
-                 scalar ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
-    png_set_compression_level(png, 4);
+    png_set_IHDR(png, info, own->width, own->height, scalar ? 16 : 8, colour_type(own), PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_compression_level(png, picture ? 4 : 9);
     if (scalar)
         write_range(png, info, picture);
-    else if (picture->kind == HEWN_PICTURE_COLOUR)
+    else if (picture && picture->kind == HEWN_PICTURE_COLOUR)
         png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
-    for (uint32_t y = 0; y < picture->height; y++) {
-        fill_row(picture, y, row);
+    for (uint32_t y = 0; y < own->height; y++) {
+        if (picture)
+            fill_row(picture, y, row);
+        else
+            memcpy(row, own->bytes + (size_t)y * own->width * own->channels, (size_t)own->width * own->channels);
         png_write_row(png, row);
     }
     png_write_end(png, NULL);
     return true;
 }
 
-static hewn_result write_all(const hewn_picture *picture, writing *w, hewn_error *error)
+static hewn_result write_all(const image *own, hewn_output *output, hewn_error *error)
 {
+    writing w = {.output = output, .result = HEWN_OK, .error = error};
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, be_silent);
     png_infop info = png ? png_create_info_struct(png) : NULL;
-    uint8_t *row = hewn_alloc(picture->width, 6);
+    uint8_t *row = hewn_alloc(own->width, 6);
     bool made = info && row, written = false;
     if (made) {
-        png_set_write_fn(png, w, write_bytes, flush_nothing);
-        written = write_png(picture, png, info, row);
+        png_set_write_fn(png, &w, write_bytes, flush_nothing);
+        written = write_png(own, png, info, row);
     }
     if (png)
         png_destroy_write_struct(&png, &info);
     hewn_free(row);
-    if (w->result != HEWN_OK)
-        return w->result;
+    if (w.result != HEWN_OK)
+        return w.result;
     return written ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory writing a picture");
+}
+
+hewn_result hewn_png_write_bytes(hewn_output *output, const uint8_t *bytes, uint32_t width, uint32_t height,
+                                 uint32_t channels, hewn_error *error)
+{
+    const image own = {.width = width, .height = height, .bytes = bytes, .channels = channels};
+    return write_all(&own, output, error);
 }
 
 hewn_result hewn_picture_write(const hewn_picture *picture, const char *path, hewn_error *error)
@@ -124,11 +149,12 @@ hewn_result hewn_picture_write(const hewn_picture *picture, const char *path, he
         picture->height > 0x7FFFFFFF)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a picture of %u x %u pixels cannot be written", picture->width,
                          picture->height);
-    writing w = {.result = HEWN_OK, .error = error};
-    HEWN_TRY(hewn_output_create(path, &w.output, error));
-    hewn_result result = write_all(picture, &w, error);
+    const image own = {.width = picture->width, .height = picture->height, .picture = picture};
+    hewn_output *output;
+    HEWN_TRY(hewn_output_create(path, &output, error));
+    hewn_result result = write_all(&own, output, error);
     if (result == HEWN_OK)
-        return hewn_output_finish(&w.output, error);
-    hewn_output_destroy(&w.output);
+        return hewn_output_finish(&output, error);
+    hewn_output_destroy(&output);
     return result;
 }

@@ -55,7 +55,8 @@ hewn_result hewn_model_read(const char *path, const hewn_read_desc *desc, hewn_m
     HEWN_TRY(hewn_progress_report(wanted->progress, "load", 0, error));
     HEWN_TRY(hewn_file_read(path, SIZE_MAX / 4, &bytes, &length, error));
     hewn_result result = unpack(&bytes, &length, path, wanted, error);
-    hewn_source source = {bytes, length, path, strcmp(path, "-") == 0 ? NULL : path, wanted->progress};
+    hewn_source source = {
+        bytes, length, path, strcmp(path, "-") == 0 ? NULL : path, wanted->progress, wanted->base_colors};
     if (result == HEWN_OK)
         result = read(&source, out, error);
     hewn_free(bytes);

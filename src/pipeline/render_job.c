@@ -4,8 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/alloc.h"
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/progress.h"
+#include "mesh/corner_colors.h"
 #include "pipeline/domain.h"
 #include "pipeline/opening.h"
 #include "pipeline/paths.h"
@@ -18,6 +21,7 @@ typedef struct render_job {
     hewn_axis up;
     hewn_scene *scene;
     hewn_triangles triangles;
+    float *colors; /* of their corners; NULL: none */
     hewn_opening opening;
     bool opened;
     hewn_renderer *renderer;
@@ -52,12 +56,15 @@ static hewn_result check(render_job *job, hewn_error *error)
 
 static hewn_result load_mesh(render_job *job, hewn_error *error)
 {
-    const hewn_read_desc read = {.format = job->mesh, .progress = job->desc->progress};
+    const hewn_read_desc read = {.format = job->mesh, .progress = job->desc->progress, .base_colors = true};
     hewn_model model = {0};
     HEWN_TRY(hewn_model_read(job->desc->scene.path, &read, &model, error));
     if (!job->desc->up && model.up_known)
         job->up = model.up;
+    bool linear = job->mesh == HEWN_MESH_GLB || job->mesh == HEWN_MESH_GLTF; /* elsewhere as on a screen */
     hewn_result result = hewn_triangles_from_model(&model, &job->triangles, error);
+    if (result == HEWN_OK)
+        result = hewn_corner_colors_of_model(&model, linear, &job->colors, error);
     hewn_model_destroy(&model);
     return result;
 }
@@ -158,6 +165,7 @@ static hewn_result render_surface(render_job *job, hewn_error *error)
     render.width = job->report->width;
     render.height = job->report->height;
     render.progress = job->desc->progress;
+    render.corner_colors = job->colors;
     if (job->scene) {
         render.painted = hewn_scene_field(job->scene);
         render.painted_root = hewn_field_root(render.painted);
@@ -191,6 +199,7 @@ static hewn_result run(render_job *job, hewn_error *error)
         snprintf(job->report->where, sizeof job->report->where, "%s", hewn_device_get_info(job->opening.device)->name);
     if (!job->opened || job->report->stats.on_host)
         snprintf(job->report->where, sizeof job->report->where, "the host");
+    HEWN_TRY(hewn_progress_report(desc->progress, "write", 0, error));
     return hewn_picture_write(&job->picture, desc->output, error);
 }
 
@@ -206,6 +215,7 @@ hewn_result hewn_render_file(const hewn_render_job_desc *desc, hewn_render_repor
         out->validation_messages = atomic_load(&job.opening.messages);
     }
     hewn_triangles_destroy(&job.triangles);
+    hewn_free(job.colors);
     hewn_scene_destroy(&job.scene);
     hewn_picture_destroy(&job.picture);
     out->seconds = hewn_clock_now() - began;

@@ -118,6 +118,8 @@ static void get_row(reader *from, hewn_domain domain, unsigned char *row)
 static char *get_string(reader *from, size_t most)
 {
     const size_t length = get_varint(from);
+    if (from->fault)
+        return NULL;
     if (length > most || length > left(from) || memchr(from->at, 0, length)) {
         find_fault(from, "a name is too long or has a zero byte");
         return NULL;

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "query/internal.h"
@@ -12,7 +13,10 @@
 /* How much room around a box slopes are bounded in, in diagonals. */
 #define ROOM 64.0
 
-enum { BLOCK = 4096, MOST_BOXES = 65536 };
+enum { LEAST = 64, BLOCK = 4096, MOST_BOXES = 65536 };
+
+/* Seconds: blocks grow while they take less, so that whoever wants to stop is heard soon. */
+#define SHORT 0.05
 
 static hewn_result check_box(const hewn_box *box, hewn_error *error)
 {
@@ -147,8 +151,9 @@ static hewn_result ask(hewn_query *query, make_question *make, const void *items
     if (!questions)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for questions");
     hewn_result result = HEWN_OK;
-    for (size_t first = 0; first < count && result == HEWN_OK; first += block) {
-        size_t taken = count - first < block ? count - first : block;
+    for (size_t first = 0, size = LEAST, taken; first < count && result == HEWN_OK; first += taken) {
+        double began = hewn_clock_now();
+        taken = count - first < size ? count - first : size;
         result = hewn_progress_report(progress, "query", (double)first / (double)count, error);
         for (size_t i = 0; i < taken && result == HEWN_OK; i++)
             result = make(items, first + i, &questions[i], error);
@@ -156,6 +161,7 @@ static hewn_result ask(hewn_query *query, make_question *make, const void *items
             result = hewn_query_ask_device(query, questions, taken, &limits, answers + first, error);
         else if (result == HEWN_OK)
             result = ask_host(query, questions, taken, &limits, answers + first, error);
+        size = 2 * size <= block && hewn_clock_now() - began < SHORT ? 2 * size : size;
     }
     hewn_free(questions);
     if (result != HEWN_OK)

@@ -12,6 +12,7 @@ enum { TILE = 32, BATCH = 1 << 17, MOST_SAMPLES = 64, USUAL_SAMPLES = 4 };
 struct hewn_renderer {
     hewn_tracer tracer;
     hewn_box box;
+    bool of_triangles;
     double prepare_seconds;
 };
 
@@ -81,6 +82,7 @@ hewn_result hewn_renderer_of_triangles(const hewn_triangles *triangles, hewn_ren
     *out = NULL;
     double began = hewn_clock_now();
     HEWN_TRY(create(out, error));
+    (*out)->of_triangles = true;
     hewn_result result = hewn_tracer_of_triangles(triangles, &(*out)->tracer, &(*out)->box, error);
     if (result != HEWN_OK)
         hewn_renderer_destroy(out);
@@ -114,6 +116,7 @@ static hewn_result find_ground(rendering *r, hewn_error *error)
     double length = box->hi[up] - box->lo[up], lowest = box->hi[up];
     hewn_stage plain = r->stage;
     plain.flags = 0;
+    plain.corner_colors = NULL;
     plain.nearness = fmaxf(plain.nearness, (float)(1e-4 * length));
     plain.spread = 0;
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
@@ -149,11 +152,17 @@ static hewn_result find_colours(rendering *r, hewn_error *error)
         const hewn_ray *ray = &batch->rays[i];
         if (batch->met[i].what != HEWN_MET_SURFACE)
             continue;
+        if (!batch->points) { /* the tracer of triangles told them, a ray's at its place */
+            memmove(batch->colours + 3 * count++, batch->colours + 3 * i, 3 * sizeof *batch->colours);
+            continue;
+        }
         for (int k = 0; k < 3; k++)
             batch->points[3 * count + (size_t)k] =
                 (double)ray->from[k] + (double)batch->met[i].t * (double)ray->along[k];
         count++;
     }
+    if (!batch->points)
+        return HEWN_OK;
     return hewn_field_paint(r->desc->painted, r->desc->painted_root, batch->points, count, batch->colours, NULL, error);
 }
 
@@ -302,13 +311,17 @@ static hewn_result begin(rendering *r, hewn_error *error)
     r->batch.rays = hewn_alloc(BATCH, sizeof *r->batch.rays);
     r->batch.met = hewn_alloc(BATCH, sizeof *r->batch.met);
     r->batch.pixels = hewn_alloc(BATCH, sizeof *r->batch.pixels);
-    bool painted = lit && !given && desc->painted && hewn_field_has_colors(desc->painted, desc->painted_root);
+    bool painted = lit && !given && desc->painted && !r->renderer->of_triangles &&
+                   hewn_field_has_colors(desc->painted, desc->painted_root);
+    bool coloured = lit && !given && desc->corner_colors && r->renderer->of_triangles;
     r->batch.points = painted ? hewn_alloc(BATCH, 3 * sizeof *r->batch.points) : NULL;
-    r->batch.colours = painted ? hewn_alloc(BATCH, 3 * sizeof *r->batch.colours) : NULL;
+    r->batch.colours = painted || coloured ? hewn_alloc(BATCH, 3 * sizeof *r->batch.colours) : NULL;
     r->first = r->samples > 1 ? hewn_alloc(pixels, sizeof *r->first) : NULL;
-    if (!r->picture->values || !r->batch.rays || !r->batch.met || !r->batch.pixels ||
-        (painted && (!r->batch.points || !r->batch.colours)) || (r->samples > 1 && !r->first))
+    if (!r->picture->values || !r->batch.rays || !r->batch.met || !r->batch.pixels || (painted && !r->batch.points) ||
+        ((painted || coloured) && !r->batch.colours) || (r->samples > 1 && !r->first))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a picture of %u x %u pixels", width, height);
+    r->stage.corner_colors = coloured ? desc->corner_colors : NULL;
+    r->stage.colors = r->batch.colours;
     return HEWN_OK;
 }
 

@@ -29,6 +29,8 @@ typedef struct hewn_stage {
     uint32_t up;    /* axis */
     uint32_t flags; /* HEWN_TRACE_... */
     float nearness, spread;
+    const float *corner_colors; /* of triangles, nine numbers each; NULL: nobody asks for colours */
+    float *colors;              /* where they are asked for: three numbers a ray that meets the surface */
 } hewn_stage;
 
 typedef struct hewn_tracer {

@@ -323,6 +323,18 @@ static void find_normal(const triangle_tracer *tracer, uint32_t triangle, const 
     }
 }
 
+/* Between the corners of the triangle. */
+static void take_color(const hewn_stage *stage, uint32_t triangle, const double weights[3], size_t number)
+{
+    const float *corners = stage->corner_colors + 9 * (size_t)triangle;
+    for (int i = 0; i < 3; i++) {
+        double sum = 0;
+        for (int k = 0; k < 3; k++)
+            sum += weights[k] * (double)corners[3 * k + i];
+        stage->colors[3 * number + (size_t)i] = (float)sum;
+    }
+}
+
 static void trace_one(const triangle_tracer *tracer, const hewn_stage *stage, const hewn_ray *ray, size_t number,
                       hewn_met *met)
 {
@@ -333,6 +345,8 @@ static void trace_one(const triangle_tracer *tracer, const hewn_stage *stage, co
     met->what = t < FAR_AWAY ? HEWN_MET_SURFACE : HEWN_MET_NOTHING;
     if (met->what == HEWN_MET_SURFACE)
         find_normal(tracer, triangle, weights, ray, met->normal, flat);
+    if (met->what == HEWN_MET_SURFACE && stage->corner_colors)
+        take_color(stage, triangle, weights, number);
     meet_ground(stage, ray, met);
     if (met->what == HEWN_MET_GROUND)
         memcpy(flat, met->normal, sizeof flat);

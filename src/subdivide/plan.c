@@ -1,4 +1,3 @@
-#define _DEFAULT_SOURCE /* sysconf's pages of memory */
 #include "subdivide/plan.h"
 
 #include <unistd.h>

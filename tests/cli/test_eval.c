@@ -101,6 +101,71 @@ static void test_many_points(void **state)
     run_folder_destroy(folder);
 }
 
+/* Numbers of two texts are the same to `off` of themselves and the unit; how many there are. */
+static long compare_numbers(const char *a, const char *b, double off)
+{
+    long count = 0;
+    for (;; count++) {
+        char *end_a, *end_b;
+        double x = strtod(a, &end_a), y = strtod(b, &end_b);
+        assert_int_equal(end_a == a, end_b == b);
+        if (end_a == a)
+            return count;
+        if (!(fabs(x - y) <= off * (1 + fabs(x))))
+            fail_msg("number %ld is %.9g or %.9g", count, x, y);
+        a = end_a;
+        b = end_b;
+    }
+}
+
+/* A device gives what the host gives, in single precision: at points, with gradients, on grids of more than one batch,
+ * and of a field that is too large for it. */
+static void test_device(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    run_write_file(run_path(folder, "s.lua"),
+                   "bounds(-2, -2, -2, 2, 2, 2)\n"
+                   "return sphere(1):smooth_union(box(1.5, 0.7, 2):rotate_z(30), 0.2):twist(0.3) + 0.1 * sin(3 * x)\n");
+    run_write_file(run_path(folder, "large.lua"),
+                   "bounds(0, 0, 0, 10, 10, 10)\nlocal s = sphere(0.3)\nfor i = 1, 900 do\n"
+                   "  s = s:union(sphere(0.3):move(i % 10, i // 10 % 10, i // 100))\nend\nreturn s\n");
+    FILE *file = fopen(run_path(folder, "p.txt"), "w");
+    assert_non_null(file);
+    for (int i = 0; i < 70000; i++)
+        fprintf(file, "%.3f %.3f %.3f\n", sin(i) * 2, cos(1.7 * i) * 2, sin(0.3 * i + 1) * 2);
+    fclose(file);
+    static const char *const ways[][6] = {{"s.lua", "--points", "p.txt", "--gradient"},
+                                          {"s.lua", "--at", "0.5,0.25,1", "--at", "1,1,1"},
+                                          {"s.lua", "--grid", "50x40x35"},
+                                          {"s.lua", "--grid", "31x17"},
+                                          {"large.lua", "--grid", "20x20x4"}};
+    static const long counts[] = {280000, 2, 70000, 527, 1600};
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        run_result results[2];
+        for (int k = 0; k < 2; k++) {
+            run_desc desc = {.folder = folder, .arguments = {"eval"}, .changes = {"HEWN_VALIDATION=1"}};
+            int n = 1;
+            for (int j = 0; ways[i][j]; j++)
+                desc.arguments[n++] = ways[i][j];
+            desc.arguments[n++] = "--device";
+            desc.arguments[n++] = k == 0 ? "host" : "0";
+            desc.arguments[n] = "-q";
+            results[k] = run_expecting(0, &desc);
+        }
+        assert_int_equal(compare_numbers(results[0].out, results[1].out, 1e-4), counts[i]);
+        run_result_destroy(&results[0]);
+        run_result_destroy(&results[1]);
+    }
+    run_result result = RUN(2, folder, "eval", "s.lua", "--grid", "4x4", "--device", "0", "--report", "r.json");
+    assert_non_null(strstr(result.err, "--report"));
+    run_result_destroy(&result);
+    result = RUN(4, folder, "eval", "s.lua", "--grid", "4x4", "--device", "no such device", "-o", "x.txt");
+    run_result_destroy(&result);
+    assert_int_equal(run_folder_count(folder), 3);
+    run_folder_destroy(folder);
+}
+
 static void test_grids(void **state)
 {
     (void)state;
@@ -280,9 +345,10 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_points), cmocka_unit_test(test_bad_lines), cmocka_unit_test(test_many_points),
-        cmocka_unit_test(test_grids),  cmocka_unit_test(test_share),     cmocka_unit_test(test_nearest),
-        cmocka_unit_test(test_rays),   cmocka_unit_test(test_clearance), cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_points),   cmocka_unit_test(test_bad_lines), cmocka_unit_test(test_many_points),
+        cmocka_unit_test(test_grids),    cmocka_unit_test(test_share),     cmocka_unit_test(test_nearest),
+        cmocka_unit_test(test_device),   cmocka_unit_test(test_rays),      cmocka_unit_test(test_clearance),
+        cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

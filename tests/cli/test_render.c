@@ -1,88 +1,8 @@
 /* `hewn render`: what pictures show, that they are the same on every run, and what is refused. Pictures are read back
- * with the PNG reader below. */
+ * with a PNG reader of the tests' own. */
 #include <math.h>
-#include <zlib.h>
 
-#include "run.h"
-
-typedef struct png {
-    uint32_t width, height, channels, depth; /* bits */
-    unsigned char *rows;                     /* without filters; 16 bits have the high byte first */
-    double lo, hi;                           /* of the text chunks; NaN: none */
-} png;
-
-static uint32_t number_at(const unsigned char *at)
-{
-    return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
-}
-
-static int paeth(int a, int b, int c)
-{
-    int p = a + b - c, pa = abs(p - a), pb = abs(p - b), pc = abs(p - c);
-    return pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
-}
-
-static void unfilter(png *picture, const unsigned char *raw)
-{
-    size_t step = picture->channels * picture->depth / 8, stride = step * picture->width;
-    for (size_t y = 0; y < picture->height; y++) {
-        const unsigned char *from = raw + y * (stride + 1) + 1;
-        unsigned char *to = picture->rows + y * stride;
-        for (size_t i = 0; i < stride; i++) {
-            int left = i >= step ? to[i - step] : 0, up = y > 0 ? to[i - stride] : 0;
-            int corner = i >= step && y > 0 ? to[i - stride - step] : 0;
-            const int add[5] = {0, left, up, (left + up) / 2, paeth(left, up, corner)};
-            assert_true(raw[y * (stride + 1)] < 5);
-            to[i] = (unsigned char)(from[i] + add[raw[y * (stride + 1)]]);
-        }
-    }
-}
-
-/* The chunks IHDR, tEXt and IDAT; checksums are zlib's. */
-static png read_png(const char *path)
-{
-    size_t length, packed_length = 0;
-    unsigned char *bytes = (unsigned char *)run_read_file(path, &length), *packed = malloc(length);
-    png out = {.lo = (double)NAN, .hi = (double)NAN};
-    assert_memory_equal(bytes, "\x89PNG\r\n\x1a\n", 8);
-    for (size_t at = 8; at < length;) {
-        uint32_t size = number_at(bytes + at);
-        const unsigned char *data = bytes + at + 8;
-        assert_true(at + 12 + size <= length);
-        assert_int_equal(number_at(data + size), crc32(0, bytes + at + 4, size + 4));
-        if (memcmp(bytes + at + 4, "IHDR", 4) == 0) {
-            out.width = number_at(data);
-            out.height = number_at(data + 4);
-            out.depth = data[8];
-            out.channels = data[9] == 2 ? 3 : 1;
-        } else if (memcmp(bytes + at + 4, "tEXt", 4) == 0) {
-            double value = strtod((const char *)data + 3, NULL);
-            *(memcmp(data, "lo", 3) == 0 ? &out.lo : &out.hi) = value;
-        } else if (memcmp(bytes + at + 4, "IDAT", 4) == 0) {
-            memcpy(packed + packed_length, data, size);
-            packed_length += size;
-        }
-        at += 12 + size;
-    }
-    uLongf raw_length = ((uLongf)out.width * out.channels * out.depth / 8 + 1) * out.height;
-    unsigned char *raw = malloc(raw_length);
-    out.rows = malloc(raw_length);
-    assert_non_null(raw);
-    assert_non_null(out.rows);
-    assert_int_equal(uncompress(raw, &raw_length, packed, packed_length), Z_OK);
-    unfilter(&out, raw);
-    free(raw);
-    free(packed);
-    free(bytes);
-    return out;
-}
-
-/* One number of a pixel. */
-static unsigned value_of(const png *picture, uint32_t x, uint32_t y, uint32_t channel)
-{
-    size_t at = ((size_t)y * picture->width + x) * picture->channels + channel;
-    return picture->depth == 16 ? picture->rows[2 * at] * 256U + picture->rows[2 * at + 1] : picture->rows[at];
-}
+#include "png_read.h"
 
 static char *folder;
 
@@ -235,6 +155,84 @@ static void test_a_mesh(void **state)
     free(b.rows);
 }
 
+/* --- colours -------------------------------------------------------------------------------------------------------
+ */
+
+/* A mesh of a painted scene looks like the scene, whatever the format and the space its colours are in. */
+static void test_colours_of_meshes(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"paint.glb", "paint.ply", "paint.obj", "paint.off"};
+    static const char *const look[] = {"--size",      "80x60", "--camera", "2,-6,3:0,0,0:0,0,1/25",
+                                       "--no-ground", "--up",  "+Z",       NULL};
+    run_write_file(run_path(folder, "paint.lua"),
+                   "bounds(-1.6, -1.6, -1.6, 1.6, 1.6, 1.6)\n"
+                   "return sphere(1):move(-0.5, 0, 0):color(0.9, 0.2, 0.1):smooth_union(\n"
+                   "  sphere(0.8):move(0.7, 0, 0):color(0.1, 0.3, 0.9), 0.3)\n");
+    render(0, "paint.lua", "scene.png", look);
+    png scene = read_png(run_path(folder, "scene.png"));
+    for (int i = 0; i < 4; i++) {
+        run_desc desc = {.folder = folder, .arguments = {"mesh", "paint.lua", "-o", names[i], "--res", "64", "-q"}};
+        run_result result = run_expecting(0, &desc);
+        run_result_destroy(&result);
+        render(0, names[i], "mesh.png", look);
+        png mesh = read_png(run_path(folder, "mesh.png"));
+        double sum = 0, red = 0, blue = 0;
+        for (uint32_t y = 0; y < 60; y++)
+            for (uint32_t x = 0; x < 80; x++) {
+                for (uint32_t k = 0; k < 3; k++)
+                    sum += fabs((double)value_of(&scene, x, y, k) - value_of(&mesh, x, y, k)) / (3 * 80 * 60);
+                int warm = (int)value_of(&mesh, x, y, 0) - (int)value_of(&mesh, x, y, 2);
+                red += warm > 80;
+                blue += warm < -80;
+            }
+        if (sum > 2 || red < 300 || blue < 100)
+            fail_msg("%s: off by %.2f on average; %g red pixels, %g blue ones", names[i], sum, red, blue);
+        free(mesh.rows);
+    }
+    free(scene.rows);
+}
+
+/* Two squares side by side, red on the left and green on the right. */
+static void check_squares(const char *file)
+{
+    RENDER(file, "squares.png", "--size", "60x40", "--view", "front", "--no-ground");
+    png picture = read_png(run_path(folder, "squares.png"));
+    for (uint32_t x = 20; x < 40; x += 13) {
+        unsigned red = value_of(&picture, x, 20, 0), green = value_of(&picture, x, 20, 1);
+        unsigned blue = value_of(&picture, x, 20, 2);
+        if (x < 30 ? red < 100 || green > 40 || blue > 40 : green < 60 || red > 40 || blue > 40)
+            fail_msg("%s: %u %u %u at %u", file, red, green, blue, x);
+    }
+    free(picture.rows);
+}
+
+static void test_colours_of_faces(void **state)
+{
+    (void)state;
+    run_write_file(run_path(folder, "two.off"), "OFF\n6 2 0\n-1 0 -1\n0 0 -1\n0 0 1\n-1 0 1\n1 0 -1\n1 0 1\n"
+                                                "4 0 1 2 3 200 0 0\n4 1 4 5 2 0 150 0\n");
+    check_squares("two.off");
+    static const char data[] =
+        "AACAvwAAgL8AAAAAAAAAAAAAgL8AAAAAAAAAAAAAgD8AAAAAAACAvwAAgL8AAAAAAAAAAAAAgD8AAAAAAACAvwAA"
+        "gD8AAAAAAAAAAAAAgL8AAAAAAACAPwAAgL8AAAAAAACAPwAAgD8AAAAAAAAAAAAAgL8AAAAAAACAPwAAgD8AAAAA"
+        "AAAAAAAAgD8AAAAA";
+    char text[3000];
+    snprintf(
+        text, sizeof text,
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":144,\"uri\":\"data:application/octet-stream;"
+        "base64,%s\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":144}],\"accessors\":["
+        "{\"bufferView\":0,\"componentType\":5126,\"count\":6,\"type\":\"VEC3\",\"min\":[-1,-1,0],\"max\":[0,1,0]},"
+        "{\"bufferView\":0,\"byteOffset\":72,\"componentType\":5126,\"count\":6,\"type\":\"VEC3\",\"min\":[0,-1,0],"
+        "\"max\":[1,1,0]}],\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0.3,0,1]}},"
+        "{\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.6,0,0,1]}}],\"meshes\":[{\"primitives\":["
+        "{\"attributes\":{\"POSITION\":0},\"material\":1},{\"attributes\":{\"POSITION\":1},\"material\":0}]}],"
+        "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0}",
+        data);
+    run_write_file(run_path(folder, "two.gltf"), text);
+    check_squares("two.gltf");
+}
+
 static void test_refusals(void **state)
 {
     (void)state;
@@ -280,9 +278,15 @@ static void test_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_ball),         cmocka_unit_test(test_a_disc), cmocka_unit_test(test_light),
-        cmocka_unit_test(test_the_same_bytes), cmocka_unit_test(test_a_mesh), cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_a_ball),
+        cmocka_unit_test(test_a_disc),
+        cmocka_unit_test(test_light),
+        cmocka_unit_test(test_the_same_bytes),
+        cmocka_unit_test(test_a_mesh),
+        cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_colours_of_meshes),
+        cmocka_unit_test(test_colours_of_faces),
     };
     return cmocka_run_group_tests(tests, open_folder, close_folder);
 }

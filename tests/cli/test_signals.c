@@ -102,6 +102,79 @@ static void test_cancel_a_silent_pipe(void **state)
     run_folder_destroy(folder);
 }
 
+/* --- commands that answer --------------------------------------------------------------------------------------- */
+
+/* The signal comes after `delay`; the end soon after it, with nothing left of the output. */
+static void cancel_soon(const char *const *arguments, const char *input, double delay, int signal)
+{
+    char *folder = run_folder_create();
+    run_desc desc = {.folder = folder, .input = input};
+    for (int i = 0; arguments[i]; i++)
+        desc.arguments[i] = arguments[i];
+    if (!input) {
+        FILE *file = fopen(run_path(folder, "points.txt"), "w");
+        for (int i = 0; i < 200000; i++)
+            fprintf(file, "%d %d %d\n", i % 97, i % 89, i % 83);
+        fclose(file);
+    }
+    int before = run_folder_count(folder);
+    run_process process = run_start(&desc);
+    run_sleep(delay);
+    assert_true(run_is_alive(&process));
+    double asked = run_now();
+    kill(process.id, signal);
+    assert_cancelled(&process, folder, before);
+    if (run_now() - asked > 8) /* the machine may be very busy; what goes on to its end takes minutes */
+        fail_msg("%s took %.1f s to end", arguments[0], run_now() - asked);
+    run_folder_destroy(folder);
+}
+
+#define CANCEL_SOON(input, delay, signal, ...)                                                                         \
+    cancel_soon((const char *const[]){__VA_ARGS__, NULL}, input, delay, signal)
+
+static void test_cancel_a_picture(void **state)
+{
+    (void)state;
+    static const double delays[] = {0.2, 1.2}; /* the octree, rays */
+    const char *scene = run_project_file("assets/scenes/gear.lua");
+    for (int i = 0; i < 2; i++)
+        CANCEL_SOON("/dev/null", delays[i], i == 1 ? SIGINT : SIGTERM, "render", scene, "-o", "a.png", "--device",
+                    "host", "--size", "4000x3000");
+    CANCEL_SOON("/dev/null", 0.6, SIGTERM, "render", scene, "-o", "a.png", "--size", "8000x6000", "--samples", "64");
+}
+
+static void test_cancel_values_and_queries(void **state)
+{
+    (void)state;
+    const char *scene = run_project_file("assets/scenes/gear.lua");
+    CANCEL_SOON("/dev/null", 0.5, SIGTERM, "eval", scene, "--grid", "2000x2000x2000", "-o", "a.txt", "--bounds",
+                "-60,-60,-10,60,60,30");
+    CANCEL_SOON(NULL, 0.8, SIGTERM, "query", scene, "--nearest", "points.txt", "-o", "a.txt", "--tolerance", "1e-9");
+    CANCEL_SOON(NULL, 0.3, SIGINT, "query", scene, "--nearest", "points.txt", "-o", "a.txt");
+}
+
+static void test_cancel_where_nothing_is_read(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    const char *pipe_name = run_path(folder, "pipe");
+    assert_int_equal(mkfifo(pipe_name, 0600), 0);
+    int both_ends = open(pipe_name, O_RDWR | O_CLOEXEC);
+    assert_true(both_ends >= 0);
+    const char *scene = run_project_file("assets/scenes/csg.lua");
+    CANCEL_SOON(pipe_name, 0.4, SIGTERM, "eval", scene, "--points", "-", "-o", "a.txt");
+    CANCEL_SOON(pipe_name, 0.4, SIGINT, "query", scene, "--nearest", "-", "-o", "a.txt");
+    close(both_ends);
+    run_folder_destroy(folder);
+}
+
+static void test_cancel_an_atlas(void **state)
+{
+    (void)state;
+    CANCEL_SOON("/dev/null", 0.5, SIGTERM, "atlas", run_project_file("assets/scenes/fonts/DejaVuSerif-Bold.ttf"), "-o",
+                "a.png", "--json", "a.json", "--size", "1000", "--range", "64");
+}
+
 /* --- watching ---------------------------------------------------------------------------------------------------- */
 
 /* As editors do it: a new file, renamed over the old one. */
@@ -191,6 +264,10 @@ int main(void)
         cmocka_unit_test(test_cancel_at_any_moment),
         cmocka_unit_test(test_cancel_an_endless_scene),
         cmocka_unit_test(test_cancel_a_silent_pipe),
+        cmocka_unit_test(test_cancel_a_picture),
+        cmocka_unit_test(test_cancel_values_and_queries),
+        cmocka_unit_test(test_cancel_where_nothing_is_read),
+        cmocka_unit_test(test_cancel_an_atlas),
         cmocka_unit_test(test_watch),
         cmocka_unit_test(test_watch_starts_broken),
     };

@@ -5,8 +5,8 @@
 
 #define NO_LOADER "HEWN_VULKAN_LOADER=/nonexistent/libvulkan.so"
 
-static const char *const commands[] = {"mesh",      "info",     "check",  "repair", "convert", "smooth",
-                                       "subdivide", "simplify", "render", "eval",   "query",   "devices"};
+static const char *const commands[] = {"mesh",     "info",   "check", "repair", "convert", "smooth", "subdivide",
+                                       "simplify", "render", "atlas", "eval",   "query",   "devices"};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static run_result run_words(int code, const char *first, const char *second, const char *third)

@@ -1,8 +1,9 @@
-/* Any bytes as a font, and a text set in it: a field that can be evaluated, or an error. */
+/* Any bytes as a font: a text set in it is a field that can be evaluated, or an error; so is an atlas of some letters.
+ */
 #include <math.h>
 #include <stdlib.h>
 
-#include "hewn/font.h"
+#include "hewn/atlas.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -29,6 +30,20 @@ static void set(hewn_font *font)
     }
 }
 
+static void draw(hewn_font *font)
+{
+    static const uint32_t letters[] = {'O', 'X', 'A', '8'};
+    const hewn_atlas_desc desc = {.characters = letters, .character_count = 4, .size = 5, .range = 2};
+    hewn_atlas atlas;
+    hewn_error error = {0};
+    hewn_result result = hewn_atlas_create(font, &desc, &atlas, &error);
+    if (result != HEWN_OK && (atlas.texels || error.message[0] == '\0'))
+        abort();
+    if (result == HEWN_OK && (!atlas.texels || atlas.glyph_count + atlas.missing_count != 4))
+        abort();
+    hewn_atlas_destroy(&atlas);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     hewn_font *font;
@@ -37,6 +52,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (result == HEWN_OK) {
         (void)hewn_font_name(font);
         set(font);
+        draw(font);
         hewn_font_destroy(&font);
     } else if (font || error.code != result || error.message[0] == '\0' ||
                (result != HEWN_BAD_INPUT && result != HEWN_OUT_OF_MEMORY)) {

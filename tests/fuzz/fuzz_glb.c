@@ -23,7 +23,8 @@ static bool write_and_read(const hewn_model *model, hewn_model *again)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const hewn_source source = {.bytes = (const char *)data, .length = size, .name = "fuzz"};
+    const hewn_source source = {
+        .bytes = (const char *)data, .length = size, .name = "fuzz", .base_colors = size % 2 == 1};
     hewn_model model, again;
     if (hewn_gltf_read(&source, &model, NULL) == HEWN_OK) {
         demand(hewn_model_check(&model, NULL) == HEWN_OK);

@@ -40,10 +40,12 @@ static const room rooms[] = {
     {"render", "base geom field lanes gpu eval"},
     {"query", "base geom field lanes gpu eval render"},
     {"font", "base field"},
+    {"atlas", "base field font"},
     {"scene", "base geom field font"},
     {"io", "base geom volume mesh progressive clusters field"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod outcore progressive clusters field lanes voxelize "
-                 "gpu eval iso render query font scene io"},
+    {"pipeline",
+     "base geom volume mesh smooth labels subdivide simplify lod outcore progressive clusters field lanes voxelize "
+     "gpu eval iso render query font atlas scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
@@ -65,6 +67,7 @@ static const header headers[] = {
     {"mesh", "mesh"},
     {"repair", "mesh"},
     {"mesh_views", "mesh"},
+    {"evaluate", "eval"},
     {"extract", "iso"},
     {"scene", "scene"},
     {"io", "io"},
@@ -91,6 +94,8 @@ static const header headers[] = {
     {"render", "render"},
     {"render_job", "pipeline"},
     {"font", "font"},
+    {"atlas", "atlas"},
+    {"atlas_job", "pipeline"},
     {"sampling", "open"},
     {"sampling_io", "io"},
     {"heights", "io"},

@@ -1,5 +1,7 @@
 #include "io/shim/gltf.h"
 
+#include <algorithm>
+#include <array>
 #include <deque>
 #include <fstream>
 #include <memory>
@@ -364,6 +366,7 @@ struct parsed {
     std::vector<hewn_gltf_node> nodes;
     std::vector<int> children, roots;
     std::vector<const char *> materials;
+    std::vector<std::array<float, 4>> colors;
 
     const char *keep(const std::string &text)
     {
@@ -387,6 +390,25 @@ void take_buffers(const json &document, parsed &out)
         auto uri = item.find("uri");
         bool named = uri != item.end() && uri->is_string();
         out.buffers.push_back({named ? out.keep(uri->get<std::string>()) : nullptr, length->get<uint64_t>()});
+    }
+}
+
+/* One a material; what is not four numbers is white. */
+void take_base_colors(const json &document, parsed &out)
+{
+    out.colors.assign(out.materials.size(), {1, 1, 1, 1});
+    auto materials = document.find("materials");
+    for (size_t i = 0; i < out.colors.size() && materials != document.end() && i < materials->size(); i++) {
+        const json &material = (*materials)[i];
+        auto model = material.is_object() ? material.find("pbrMetallicRoughness") : material.end();
+        if (!material.is_object() || model == material.end() || !model->is_object())
+            continue;
+        auto factor = model->find("baseColorFactor");
+        bool usable = factor != model->end() && factor->is_array() && factor->size() == 4;
+        for (size_t k = 0; usable && k < 4; k++)
+            usable = (*factor)[k].is_number();
+        for (size_t k = 0; usable && k < 4; k++)
+            out.colors[i][k] = static_cast<float>(std::min(std::max((*factor)[k].get<double>(), 0.0), 1.0));
     }
 }
 
@@ -578,6 +600,7 @@ std::unique_ptr<parsed> parse(const char *text, size_t length)
     take_model(model, *out);
     take_sparse(document, *out);
     take_topologies(document, *out);
+    take_base_colors(document, *out);
     return out;
 }
 
@@ -588,6 +611,7 @@ void expose(std::unique_ptr<parsed> from, hewn_gltf *out)
     out->accessors = from->accessors.data();
     out->attributes = from->attributes.data();
     out->materials = from->materials.data();
+    out->colors = reinterpret_cast<const float(*)[4]>(from->colors.data());
     out->primitives = from->primitives.data();
     out->meshes = from->meshes.data();
     out->nodes = from->nodes.data();

@@ -133,6 +133,7 @@ typedef struct hewn_gltf {
     const int *children;
     const int *roots;             /* of the scene to show; all parentless nodes where there is no scene */
     const char *const *materials; /* their names, which may be empty */
+    const float (*colors)[4];     /* their base colours, linear, 0 to 1; white where the file says none */
     size_t buffer_count, view_count, accessor_count, attribute_count, primitive_count, mesh_count, node_count,
         child_count, root_count, material_count;
     void *owner;
