@@ -47,8 +47,12 @@ typedef struct hewn_file_job_desc {
     const hewn_file_smooth *smooth;       /* after that; NULL: no smoothing */
     const hewn_simplify_desc *simplify;   /* after that, lengths in the input's unit; its labels, frozen and progress
                                              are not looked at. NULL: no simplification */
-    bool check;                           /* examine what will be written, */
-    bool skip_self_intersections;         /* but for these */
+    /* Bytes that the whole process may take at most, as the system counts what is resident, pages of files included; 0:
+     * no limit. Goes with simplification alone. What does not fit then is done in parts, with temporary files beside
+     * the output (docs/memory.md); where it fits the result is the same as without a limit. */
+    uint64_t max_memory;
+    bool check;                    /* examine what will be written, */
+    bool skip_self_intersections;  /* but for these */
     double began;                  /* CLOCK_MONOTONIC seconds from which the report counts; 0: when the job starts */
     const hewn_progress *progress; /* or NULL; its stages have the names of the report's */
 } hewn_file_job_desc;
@@ -82,6 +86,10 @@ typedef struct hewn_file_report {
     hewn_subdivide_report subdivide;
     bool simplified;
     hewn_simplify_report simplify;
+    uint64_t max_memory; /* asked for; 0 where it was not */
+    uint32_t passes;     /* over a mesh that does not fit in that; 0: it fits */
+    uint32_t parts;      /* most in a pass */
+    uint64_t disk_bytes; /* of temporary files */
     bool smoothed;
     hewn_smooth_method smooth_method;
     hewn_smooth_report smooth;
@@ -96,7 +104,8 @@ typedef struct hewn_file_report {
 /* Runs a job. Formats, options and the output's folder are checked before the input is read, and nothing is left behind
  * after a failure. HEWN_INVALID_ARGUMENT for a description that makes no sense or a unit or axis that the format cannot
  * have; HEWN_BAD_INPUT for a file that cannot be read or used, or that strict repair refuses; HEWN_IO for an output
- * that cannot be written; HEWN_LIMIT, HEWN_OUT_OF_MEMORY, HEWN_CANCELLED. */
+ * that cannot be written, or temporary files beside it; HEWN_OUT_OF_MEMORY, also for a limit that is too small, saying
+ * why; HEWN_LIMIT, HEWN_CANCELLED. */
 HEWN_API hewn_result hewn_file_convert(const hewn_file_job_desc *desc, hewn_file_report *out, hewn_error *error);
 
 /* Writes a report as JSON ("-": standard output). HEWN_IO, HEWN_OUT_OF_MEMORY. */

@@ -13,12 +13,13 @@
 #include "base/progress.h"
 #include "io/builder.h"
 #include "io/formats.h"
+#include "io/parts.h"
 #include "io/remark.h"
 #include "io/scan.h"
 
 static const uint32_t NONE = 0xFFFFFFFFu, UNSET = 0xFFFFFFFEu;
 
-enum { REPORT_EVERY = 1 << 20 /* bytes */ };
+enum { REPORT_EVERY = 1 << 20 /* bytes */, PART = 1 << 14 /* vertices or faces */ };
 
 /* The greatest number by which faces name something, 1-based, and where. */
 typedef struct obj_range {
@@ -36,6 +37,7 @@ typedef struct obj_values {
     uint64_t of_count;
     size_t of_room;
     obj_range range;
+    bool skipped; /* nobody wants them: they are counted only */
 } obj_values;
 
 /* From face number `face` on. */
@@ -60,6 +62,10 @@ typedef struct obj_reader {
     obj_values uvs, normals;
     obj_range range; /* of vertices */
     obj_labels labels[LABEL_COUNT];
+    uint64_t vertices_before;                                /* that were handed out in parts */
+    const hewn_part_taker *taker;                            /* of parts; NULL: the file is read as a whole */
+    bool has_colors, has_uvs, has_normals, has[LABEL_COUNT]; /* of parts: what the file has anywhere */
+    hewn_model *about;
 } obj_reader;
 
 static hewn_result fail_here(const obj_reader *reader, const char *what, hewn_error *error)
@@ -106,6 +112,10 @@ static hewn_result read_vertex(obj_reader *reader, hewn_error *error)
 /* A vt line may leave out all but the first number. */
 static hewn_result read_value(obj_reader *reader, obj_values *values, uint32_t least, hewn_error *error)
 {
+    if (values->skipped) {
+        values->count++;
+        return HEWN_OK;
+    }
     void *items = values->items;
     HEWN_TRY(hewn_reserve(&items, &values->room, values->count + 1, values->components * sizeof(float), error));
     values->items = items;
@@ -150,7 +160,7 @@ static const char *parse_value(const obj_reader *reader, obj_values *values, con
 
 static hewn_result note_value(obj_values *values, uint64_t corner, uint32_t value, hewn_error *error)
 {
-    if (value == NONE)
+    if (value == NONE || values->skipped)
         return HEWN_OK;
     void *items = values->of;
     HEWN_TRY(hewn_reserve(&items, &values->of_room, corner + 1, sizeof(uint32_t), error));
@@ -169,7 +179,8 @@ static hewn_result read_corner(obj_reader *reader, hewn_error *error)
     int64_t number;
     uint32_t vertex, uv = NONE, normal = NONE;
     at = hewn_parse_index(at, end, &number);
-    if (!at || !resolve(number, reader->builder.model.vertex_count, &reader->range, scan->line, &vertex))
+    const uint64_t count = reader->vertices_before + reader->builder.model.vertex_count;
+    if (!at || !resolve(number, count, &reader->range, scan->line, &vertex))
         return expected(reader, "a face's corner is expected", error);
     if (at < end && *at == '/')
         at = parse_value(reader, &reader->uvs, at + 1, &uv);
@@ -266,7 +277,7 @@ static void read_comment(obj_reader *reader)
 {
     const char *begin = reader->scan.at;
     hewn_scan_line(&reader->scan);
-    if (reader->builder.model.vertex_count == 0)
+    if (reader->vertices_before + reader->builder.model.vertex_count == 0)
         hewn_remark_read(begin, reader->scan.at, &reader->builder.model);
 }
 
@@ -292,6 +303,8 @@ static hewn_result read_statement(obj_reader *reader, hewn_error *error)
     return HEWN_OK;
 }
 
+static hewn_result hand_out(obj_reader *reader, uint64_t least, hewn_error *error);
+
 static hewn_result read_statements(obj_reader *reader, const hewn_progress *progress, hewn_error *error)
 {
     hewn_scan *scan = &reader->scan;
@@ -309,6 +322,8 @@ static hewn_result read_statements(obj_reader *reader, const hewn_progress *prog
             const char *statement = scan->at;
             HEWN_TRY(read_statement(reader, error));
             end_statement(scan, statement);
+            if (reader->taker)
+                HEWN_TRY(hand_out(reader, PART, error));
         }
     }
     return HEWN_OK;
@@ -327,7 +342,8 @@ static hewn_result check_range(const obj_reader *reader, obj_range range, uint64
 /* Some exporters number values that they leave out altogether; then there simply are none. */
 static hewn_result check_ranges(const obj_reader *reader, hewn_error *error)
 {
-    HEWN_TRY(check_range(reader, reader->range, reader->builder.model.vertex_count, "vertex", error));
+    const uint64_t vertices = reader->vertices_before + reader->builder.model.vertex_count;
+    HEWN_TRY(check_range(reader, reader->range, vertices, "vertex", error));
     const obj_values *all[] = {&reader->uvs, &reader->normals};
     for (int i = 0; i < 2; i++)
         if (all[i]->count > 0)
@@ -451,7 +467,7 @@ static hewn_result add_label_channel(obj_reader *reader, label_kind kind, const 
 {
     hewn_model *model = &reader->builder.model;
     const obj_labels *labels = &reader->labels[kind];
-    if (!says_anything(labels, model->face_count))
+    if (!reader->taker && !says_anything(labels, model->face_count))
         return HEWN_OK;
     hewn_channel *channel;
     const hewn_attribute_info info = {name, HEWN_DOMAIN_FACE, HEWN_SCALAR_INT32, 1};
@@ -522,6 +538,162 @@ hewn_result hewn_obj_read(const hewn_source *source, hewn_model *out, hewn_error
         result = add_channels(&reader, error);
     if (result == HEWN_OK)
         hewn_builder_move(&reader.builder, out);
+    clear_reader(&reader);
+    return result;
+}
+
+/* --- in parts ----------------------------------------------------------------------------------------------------- */
+
+/* Tables grow by doubling. */
+static hewn_result check_memory(const obj_reader *reader, uint64_t uvs, uint64_t normals, hewn_error *error)
+{
+    const uint64_t bytes = 2 * ((reader->uvs.skipped ? 0 : 8 * uvs) + (reader->normals.skipped ? 0 : 12 * normals));
+    if (bytes <= reader->taker->memory)
+        return HEWN_OK;
+    return hewn_fail_at(error, HEWN_OUT_OF_MEMORY, reader->scan.name, 0,
+                        "the file's texture coordinates and normals take up to %llu bytes, and %llu are left for them; "
+                        "--preserve says which of them count",
+                        (unsigned long long)bytes, (unsigned long long)reader->taker->memory);
+}
+
+/* What there is in the file, so that all parts have the same channels. */
+static hewn_result look_through(obj_reader *reader, const hewn_progress *progress, hewn_error *error)
+{
+    static const char *const words[LABEL_COUNT] = {"o", "g", "usemtl", "s"};
+    hewn_scan *scan = &reader->scan;
+    const char *report = scan->at;
+    uint64_t uvs = 0, normals = 0;
+    while (scan->at < scan->end) {
+        if (scan->at >= report) {
+            HEWN_TRY(hewn_progress_report(progress, "load", 0, error));
+            report = scan->end - scan->at > REPORT_EVERY ? scan->at + REPORT_EVERY : scan->end;
+        }
+        hewn_scan_blanks(scan);
+        const char *statement = scan->at;
+        const hewn_word word = hewn_scan_word_in_line(scan);
+        int numbers = 0;
+        while (!reader->has_colors && hewn_word_is(word, "v") && numbers < 6 && !hewn_scan_line_is_done(scan)) {
+            hewn_scan_word_in_line(scan);
+            reader->has_colors = ++numbers == 6;
+        }
+        uvs += hewn_word_is(word, "vt");
+        normals += hewn_word_is(word, "vn");
+        for (int kind = 0; kind < LABEL_COUNT; kind++) {
+            if (reader->has[kind] || !hewn_word_is(word, words[kind]))
+                continue;
+            const hewn_word name = kind == LABEL_SMOOTH ? hewn_scan_word_in_line(scan) : read_name(scan);
+            const bool none = kind == LABEL_SMOOTH && (hewn_word_is(name, "off") || hewn_word_is(name, "0"));
+            reader->has[kind] = name.begin < name.end && !none;
+        }
+        end_statement(scan, statement);
+    }
+    reader->has_uvs = uvs > 0;
+    reader->has_normals = normals > 0;
+    return check_memory(reader, uvs, normals, error);
+}
+static hewn_result hand_out_vertices(obj_reader *reader, hewn_error *error)
+{
+    static const hewn_attribute_info info = {"color", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3};
+    hewn_model *model = &reader->builder.model, part = {.vertex_count = model->vertex_count};
+    hewn_channel *channel = NULL;
+    part.positions = model->positions;
+    hewn_result result = reader->has_colors ? hewn_model_add_channel(&part, &info, &channel, error) : HEWN_OK;
+    if (result == HEWN_OK && channel && reader->color_count > 0)
+        memcpy(channel->values, reader->colors, reader->color_count * 3 * sizeof(float));
+    if (result == HEWN_OK)
+        result = reader->taker->take(reader->taker->user, &part, error);
+    part.positions = NULL;
+    hewn_model_destroy(&part);
+    reader->vertices_before += model->vertex_count;
+    model->vertex_count = 0;
+    reader->color_count = 0;
+    return result;
+}
+
+/* The next part's faces go on with the labels of the last one. */
+static void carry_labels(obj_reader *reader)
+{
+    for (int kind = 0; kind < LABEL_COUNT; kind++) {
+        obj_labels *labels = &reader->labels[kind];
+        if (labels->count > 0) {
+            labels->items[0] = labels->items[labels->count - 1];
+            labels->items[0].face = 0;
+            labels->count = 1;
+        }
+    }
+}
+
+static hewn_result add_part_values(obj_reader *reader, const char *name, obj_values *values, hewn_error *error)
+{
+    if (!values->skipped && values->range.greatest > values->count)
+        return hewn_fail_at(error, HEWN_LIMIT, reader->scan.name, values->range.line,
+                            "a face names %s %llu, which does not come before it; a file that does not fit in the "
+                            "memory allowed cannot have that",
+                            values->what, (unsigned long long)values->range.greatest);
+    hewn_result result = add_values(&reader->builder.model, name, HEWN_DOMAIN_CORNER, values, values->of, error);
+    values->of_count = 0;
+    return result;
+}
+
+/* Afterwards there are no faces. */
+static hewn_result hand_out_faces(obj_reader *reader, hewn_error *error)
+{
+    static const char *const names[LABEL_COUNT] = {"object", "group", "material", "smooth"};
+    hewn_model *model = &reader->builder.model;
+    if (reader->has_uvs)
+        HEWN_TRY(add_part_values(reader, "uv", &reader->uvs, error));
+    if (reader->has_normals)
+        HEWN_TRY(add_part_values(reader, "normal", &reader->normals, error));
+    for (int kind = 0; kind < LABEL_COUNT; kind++)
+        if (reader->has[kind])
+            HEWN_TRY(add_label_channel(reader, (label_kind)kind, names[kind], error));
+    HEWN_TRY(reader->taker->take(reader->taker->user, model, error));
+    carry_labels(reader);
+    double *positions = model->positions;
+    const size_t room = reader->builder.position_room;
+    model->positions = NULL;
+    hewn_builder_clear(&reader->builder);
+    model->positions = positions;
+    reader->builder.position_room = room;
+    return HEWN_OK;
+}
+
+/* Hands out what was read where that are `least` vertices or faces. */
+static hewn_result hand_out(obj_reader *reader, uint64_t least, hewn_error *error)
+{
+    const hewn_model *model = &reader->builder.model;
+    if (model->vertex_count < least && model->face_count < least)
+        return HEWN_OK;
+    if (reader->vertices_before == 0)
+        *reader->about = (hewn_model){.unit = model->unit, .up = model->up, .up_known = model->up_known};
+    if (model->vertex_count > 0)
+        HEWN_TRY(hand_out_vertices(reader, error));
+    return model->face_count > 0 ? hand_out_faces(reader, error) : HEWN_OK;
+}
+
+static hewn_result read_in_parts(obj_reader *reader, const hewn_source *source, hewn_error *error)
+{
+    HEWN_TRY(check_text(reader, error));
+    const hewn_scan begin = reader->scan;
+    HEWN_TRY(look_through(reader, source->progress, error));
+    reader->scan = begin;
+    HEWN_TRY(read_statements(reader, source->progress, error));
+    HEWN_TRY(hand_out(reader, 1, error));
+    return check_ranges(reader, error);
+}
+
+hewn_result hewn_obj_read_parts(const hewn_source *source, const hewn_part_taker *taker, hewn_model *about,
+                                hewn_error *error)
+{
+    obj_reader reader = {
+        .scan = {source->bytes, source->bytes + source->length, source->name, 1},
+        .uvs = {.what = "texture coordinate", .components = 2, .skipped = taker->no_uvs},
+        .normals = {.what = "normal", .components = 3, .skipped = taker->no_normals},
+        .taker = taker,
+        .about = about,
+    };
+    *about = (hewn_model){0};
+    hewn_result result = read_in_parts(&reader, source, error);
     clear_reader(&reader);
     return result;
 }

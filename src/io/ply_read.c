@@ -7,12 +7,14 @@
 #include "io/builder.h"
 #include "io/bytes.h"
 #include "io/formats.h"
+#include "io/parts.h"
 #include "io/ply_channels.h"
 #include "io/ply_layout.h"
 #include "io/ply_values.h"
 #include "io/remark.h"
 
-enum { BLOCK = 512 }; /* items of a fixed size that are decoded property by property */
+/* Items of a fixed size that are decoded property by property, and items of a part. */
+enum { BLOCK = 512, PART = 1 << 14 };
 
 typedef struct ply_reader {
     const hewn_source *source;
@@ -434,16 +436,24 @@ static hewn_result read_faces(ply_reader *reader, const hewn_ply_element *elemen
     return read_items(reader, element, done, &reader->faces, error);
 }
 
-static hewn_result read_element(ply_reader *reader, const hewn_ply_element *element, hewn_error *error)
+/* Whether the rest of the file can hold what is promised. */
+static hewn_result check_room(const ply_reader *reader, const hewn_ply_element *element, uint64_t least,
+                              hewn_error *error)
 {
-    bool fixed;
-    uint64_t least = hewn_ply_least_size(&reader->header, element, &fixed);
     uint64_t left = (uint64_t)(reader->scan.end - reader->scan.at);
     uint64_t room = left + (reader->text ? 1 : 0); /* text need not end in a blank */
     if (least > 0 && element->count > room / least)
         return hewn_fail_at(error, HEWN_BAD_INPUT, reader->scan.name, 0,
                             "the header promises %llu items of at least %llu bytes, but only %llu bytes are left",
                             (unsigned long long)element->count, (unsigned long long)least, (unsigned long long)left);
+    return HEWN_OK;
+}
+
+static hewn_result read_element(ply_reader *reader, const hewn_ply_element *element, hewn_error *error)
+{
+    bool fixed;
+    uint64_t least = hewn_ply_least_size(&reader->header, element, &fixed);
+    HEWN_TRY(check_room(reader, element, least, error));
     if (element->kind == HEWN_PLY_VERTICES)
         return read_vertices(reader, element, (size_t)least, fixed, error);
     if (least == 0)
@@ -456,15 +466,17 @@ static hewn_result read_element(ply_reader *reader, const hewn_ply_element *elem
     return HEWN_OK;
 }
 
-static hewn_result read_file(ply_reader *reader, hewn_error *error)
+static hewn_result begin(ply_reader *reader, hewn_error *error)
 {
     HEWN_TRY(hewn_ply_header_read(&reader->scan, &reader->header, error));
     reader->text = reader->header.form == HEWN_PLY_TEXT;
     reader->big = reader->header.form == HEWN_PLY_BIG;
     reader->scan.line = reader->text ? reader->scan.line : 0; /* what follows has no lines */
-    for (size_t i = 0; i < reader->header.element_count; i++)
-        HEWN_TRY(read_element(reader, &reader->header.elements[i], error));
-    HEWN_TRY(hewn_builder_finish(&reader->builder, reader->scan.name, error));
+    return HEWN_OK;
+}
+
+static hewn_result add_channels(ply_reader *reader, hewn_error *error)
+{
     hewn_model *model = &reader->builder.model;
     HEWN_TRY(hewn_ply_channels_add(model, &reader->vertices, 0, error));
     HEWN_TRY(hewn_ply_channels_add(model, &reader->faces, reader->first_face, error));
@@ -475,6 +487,22 @@ static hewn_result read_file(ply_reader *reader, hewn_error *error)
     return HEWN_OK;
 }
 
+static hewn_result read_file(ply_reader *reader, hewn_error *error)
+{
+    HEWN_TRY(begin(reader, error));
+    for (size_t i = 0; i < reader->header.element_count; i++)
+        HEWN_TRY(read_element(reader, &reader->header.elements[i], error));
+    HEWN_TRY(hewn_builder_finish(&reader->builder, reader->scan.name, error));
+    return add_channels(reader, error);
+}
+
+static void clear_read(ply_reader *reader)
+{
+    hewn_builder_clear(&reader->builder);
+    hewn_ply_layout_free(&reader->vertices);
+    hewn_ply_layout_free(&reader->faces);
+}
+
 hewn_result hewn_ply_read(const hewn_source *source, hewn_model *out, hewn_error *error)
 {
     *out = (hewn_model){0};
@@ -482,9 +510,49 @@ hewn_result hewn_ply_read(const hewn_source *source, hewn_model *out, hewn_error
     hewn_result result = read_file(&reader, error);
     if (result == HEWN_OK)
         hewn_builder_move(&reader.builder, out);
-    hewn_builder_clear(&reader.builder);
-    hewn_ply_layout_free(&reader.vertices);
-    hewn_ply_layout_free(&reader.faces);
+    clear_read(&reader);
+    hewn_ply_header_free(&reader.header);
+    return result;
+}
+
+/* --- in parts ----------------------------------------------------------------------------------------------------- */
+
+/* Some items of an element, as if these were all. */
+static hewn_result take_some(ply_reader *reader, const hewn_ply_element *some, const hewn_part_taker *taker,
+                             hewn_model *about, hewn_error *error)
+{
+    HEWN_TRY(read_element(reader, some, error));
+    HEWN_TRY(add_channels(reader, error));
+    hewn_model *model = &reader->builder.model;
+    *about = (hewn_model){.unit = model->unit, .up = model->up, .up_known = model->up_known};
+    if (model->vertex_count > 0 || model->face_count > 0)
+        HEWN_TRY(taker->take(taker->user, model, error));
+    return HEWN_OK;
+}
+
+static hewn_result read_in_parts(ply_reader *reader, const hewn_part_taker *taker, hewn_model *about, hewn_error *error)
+{
+    HEWN_TRY(begin(reader, error));
+    for (size_t i = 0; i < reader->header.element_count; i++) {
+        const hewn_ply_element *element = &reader->header.elements[i];
+        const uint64_t least = hewn_ply_least_size(&reader->header, element, NULL);
+        HEWN_TRY(check_room(reader, element, least, error));
+        for (uint64_t done = 0; least > 0 && done < element->count; done += PART) {
+            hewn_ply_element some = *element;
+            some.count = element->count - done < PART ? element->count - done : PART;
+            hewn_result result = take_some(reader, &some, taker, about, error);
+            clear_read(reader);
+            HEWN_TRY(result);
+        }
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_ply_read_parts(const hewn_source *source, const hewn_part_taker *taker, hewn_model *about,
+                                hewn_error *error)
+{
+    ply_reader reader = {.source = source, .scan = {source->bytes, source->bytes + source->length, source->name, 1}};
+    hewn_result result = read_in_parts(&reader, taker, about, error);
     hewn_ply_header_free(&reader.header);
     return result;
 }

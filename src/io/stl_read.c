@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "io/bytes.h"
 #include "io/formats.h"
+#include "io/parts.h"
 #include "io/remark.h"
 #include "io/scan.h"
 #include "io/welder.h"
@@ -274,4 +275,68 @@ hewn_result hewn_stl_read(const hewn_source *source, hewn_model *out, hewn_error
     hewn_welder_clear(&reader.welder);
     hewn_free(reader.solids);
     return result;
+}
+
+/* --- in parts ----------------------------------------------------------------------------------------------------- */
+
+static hewn_result find_attributes(const hewn_source *source, uint64_t count, bool *out, hewn_error *error)
+{
+    *out = false;
+    for (uint64_t t = 0; t < count && !*out; t++) {
+        if (t % BLOCK == 0)
+            HEWN_TRY(hewn_progress_report(source->progress, "load", 0, error));
+        *out = hewn_get_u16(source->bytes + HEADER + FACET * (t + 1) - 2) != 0;
+    }
+    return HEWN_OK;
+}
+
+/* Facets from `first` on with vertices of their own. */
+static hewn_result take_facets(const hewn_source *source, uint64_t first, uint64_t count, bool attributes,
+                               hewn_model *out, hewn_error *error)
+{
+    hewn_channel *channel = NULL;
+    const hewn_attribute_info info = {"attribute", HEWN_DOMAIN_FACE, HEWN_SCALAR_INT32, 1};
+    *out = (hewn_model){.vertex_count = 3 * count,
+                        .face_count = count,
+                        .positions = hewn_alloc(9 * count, sizeof *out->positions),
+                        .corners = hewn_alloc(3 * count, sizeof *out->corners)};
+    if (!out->positions || !out->corners)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for facets");
+    if (attributes)
+        HEWN_TRY(hewn_model_add_channel(out, &info, &channel, error));
+    for (uint64_t t = 0; t < count; t++) {
+        const char *at = source->bytes + HEADER + FACET * (first + t);
+        for (uint64_t k = 0; k < 3; k++) {
+            get_position(at + 12 * (k + 1), out->positions + 3 * (3 * t + k));
+            out->corners[3 * t + k] = (uint32_t)(3 * t + k);
+        }
+        if (channel)
+            ((int32_t *)channel->values)[t] = (int32_t)hewn_get_u16(at + FACET - 2);
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_stl_read_parts(const hewn_source *source, const hewn_part_taker *taker, hewn_model *about,
+                                hewn_error *error)
+{
+    bool attributes;
+    *about = (hewn_model){0};
+    if (is_text(source->bytes, source->length))
+        return hewn_fail_at(error, HEWN_LIMIT, source->name, 0,
+                            "an STL file of text cannot be read in parts; one of binary facets can");
+    HEWN_TRY(check_binary(source, error));
+    hewn_remark_read(source->bytes, source->bytes + HEADER - 4, about);
+    const uint64_t count = hewn_get_u32(source->bytes + HEADER - 4);
+    HEWN_TRY(find_attributes(source, count, &attributes, error));
+    for (uint64_t done = 0; done < count; done += BLOCK) {
+        hewn_model part;
+        HEWN_TRY(hewn_progress_report(source->progress, "load", (double)done / (double)count, error));
+        hewn_result result =
+            take_facets(source, done, count - done < BLOCK ? count - done : BLOCK, attributes, &part, error);
+        if (result == HEWN_OK)
+            result = taker->take(taker->user, &part, error);
+        hewn_model_destroy(&part);
+        HEWN_TRY(result);
+    }
+    return HEWN_OK;
 }

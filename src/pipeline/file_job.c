@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "pipeline/frame.h"
 #include "pipeline/losses.h"
+#include "pipeline/outcore_step.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
 #include "pipeline/smooth_step.h"
@@ -36,11 +37,27 @@ static hewn_result check(file_job *job, hewn_error *error)
     if (desc->report && strcmp(desc->report, desc->output) == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the mesh and the report cannot both go to %s",
                          strcmp(desc->output, "-") == 0 ? "standard output" : desc->output);
+    if (desc->max_memory > 0 && (!desc->simplify || desc->repair || desc->subdivide || desc->smooth || desc->check))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "only simplification alone goes with a limit of memory: all else needs the whole mesh");
+    job->report->max_memory = desc->max_memory;
     HEWN_TRY(hewn_output_check(desc->output, error));
     return desc->report ? hewn_output_check(desc->report, error) : HEWN_OK;
 }
 
 /* --- the stages -------------------------------------------------------------------------------------------------- */
+
+/* What the caller knows better than the file. */
+static void take_frame(file_job *job)
+{
+    const hewn_file_job_desc *desc = job->desc;
+    hewn_file_report *report = job->report;
+    hewn_model *model = &job->model;
+    report->file_unit = model->unit;
+    report->file_up = model->up;
+    report->file_up_known = model->up_known;
+    hewn_frame_declare((hewn_frame){desc->unit, desc->up}, model);
+}
 
 static hewn_result load(file_job *job, hewn_error *error)
 {
@@ -54,11 +71,17 @@ static hewn_result load(file_job *job, hewn_error *error)
     hewn_model *model = &job->model;
     report->vertices_before = model->vertex_count;
     report->faces_before = model->face_count;
-    report->file_unit = model->unit;
-    report->file_up = model->up;
-    report->file_up_known = model->up_known;
-    hewn_frame_declare((hewn_frame){desc->unit, desc->up}, model);
+    take_frame(job);
     hewn_stage_end(&job->stages, "load");
+    return HEWN_OK;
+}
+
+/* Within a limit of memory; what does not fit is simplified as well. */
+static hewn_result load_within(file_job *job, hewn_error *error)
+{
+    bool done;
+    HEWN_TRY(hewn_outcore_step(job->desc, job->report, &job->stages, &job->model, &done, error));
+    take_frame(job);
     return HEWN_OK;
 }
 
@@ -178,14 +201,17 @@ static hewn_result run(file_job *job, hewn_error *error)
     report->output = hewn_strdup(desc->output);
     if (!report->input || !report->output)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the report");
-    HEWN_TRY(load(job, error));
+    if (desc->max_memory > 0)
+        HEWN_TRY(load_within(job, error));
+    else
+        HEWN_TRY(load(job, error));
     if (desc->repair)
         HEWN_TRY(repair(job, error));
     if (desc->subdivide)
         HEWN_TRY(subdivide(job, error));
     if (desc->smooth)
         HEWN_TRY(smooth(job, error));
-    if (desc->simplify)
+    if (desc->simplify && !report->simplified)
         HEWN_TRY(simplify(job, error));
     HEWN_TRY(convert(job, error));
     if (desc->check)

@@ -81,6 +81,18 @@ static void print_losses(hewn_json *json, const hewn_file_losses *lost)
     hewn_json_end_object(json);
 }
 
+static void print_limit(hewn_json *json, const hewn_file_report *report)
+{
+    if (report->max_memory == 0) {
+        hewn_json_string(json, "max_memory", NULL);
+        return;
+    }
+    hewn_json_unsigned(json, "max_memory", report->max_memory);
+    hewn_json_unsigned(json, "passes", report->passes);
+    hewn_json_unsigned(json, "parts", report->parts);
+    hewn_json_unsigned(json, "disk_bytes", report->disk_bytes);
+}
+
 hewn_result hewn_file_report_write(const hewn_file_report *report, const char *path, hewn_error *error)
 {
     hewn_text text = {0};
@@ -95,6 +107,7 @@ hewn_result hewn_file_report_write(const hewn_file_report *report, const char *p
     hewn_json_object(&json, "peak");
     hewn_json_unsigned(&json, "host_bytes", report->peak_host_bytes);
     hewn_json_end_object(&json);
+    print_limit(&json, report);
     print_counts(&json, "counts_before", report->vertices_before, report->faces_before);
     print_counts(&json, "counts", report->vertices, report->faces);
     print_conversion(&json, report);

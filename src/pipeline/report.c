@@ -76,22 +76,35 @@ hewn_result hewn_report_add_scene(hewn_report *report, const hewn_scene *scene, 
     return HEWN_OK;
 }
 
-/* VmHWM belongs to this program alone; ru_maxrss, the fallback, starts with what the parent had before exec. */
-uint64_t hewn_peak_host_bytes(void)
+/* A size that the system tells of this process; 0 where it does not. */
+static uint64_t read_status(const char *format)
 {
     unsigned long long kibibytes = 0;
     FILE *status = fopen("/proc/self/status", "r");
-    if (status) {
-        char line[256];
-        while (!kibibytes && fgets(line, sizeof line, status))
-            if (sscanf(line, "VmHWM: %llu kB", &kibibytes) != 1)
-                kibibytes = 0;
-        fclose(status);
-    }
-    struct rusage usage;
-    if (!kibibytes && getrusage(RUSAGE_SELF, &usage) == 0)
-        kibibytes = (unsigned long long)usage.ru_maxrss;
+    if (!status)
+        return 0;
+    char line[256];
+    while (!kibibytes && fgets(line, sizeof line, status))
+        if (sscanf(line, format, &kibibytes) != 1)
+            kibibytes = 0;
+    fclose(status);
     return (uint64_t)kibibytes * 1024;
+}
+
+/* VmHWM belongs to this program alone; ru_maxrss, the fallback, starts with what the parent had before exec. */
+uint64_t hewn_peak_host_bytes(void)
+{
+    const uint64_t bytes = read_status("VmHWM: %llu kB");
+    struct rusage usage;
+    if (!bytes && getrusage(RUSAGE_SELF, &usage) == 0)
+        return (uint64_t)usage.ru_maxrss * 1024;
+    return bytes;
+}
+
+uint64_t hewn_host_bytes(void)
+{
+    const uint64_t bytes = read_status("VmRSS: %llu kB");
+    return bytes ? bytes : hewn_peak_host_bytes();
 }
 
 void hewn_report_destroy(hewn_report *report)

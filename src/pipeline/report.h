@@ -13,4 +13,7 @@ hewn_result hewn_report_add_scene(hewn_report *report, const hewn_scene *scene, 
 /* The most bytes that this process had resident so far; 0 where the system does not say. */
 uint64_t hewn_peak_host_bytes(void);
 
+/* Those that it has now. */
+uint64_t hewn_host_bytes(void);
+
 #endif

@@ -27,6 +27,7 @@ static const room rooms[] = {
     {"subdivide", "base geom mesh"},
     {"simplify", "base geom mesh"},
     {"lod", "base geom mesh simplify"},
+    {"outcore", "base geom mesh simplify"},
     {"progressive", "base geom mesh"},
     {"clusters", "base geom mesh progressive"},
     {"labels", "base geom volume mesh smooth simplify"},
@@ -42,8 +43,9 @@ static const room rooms[] = {
     {"atlas", "base field font"},
     {"scene", "base geom field font"},
     {"io", "base geom volume mesh progressive clusters field"},
-    {"pipeline", "base geom volume mesh smooth labels subdivide simplify lod progressive clusters field lanes voxelize "
-                 "gpu eval iso render query font atlas scene io"},
+    {"pipeline",
+     "base geom volume mesh smooth labels subdivide simplify lod outcore progressive clusters field lanes voxelize "
+     "gpu eval iso render query font atlas scene io"},
     {"app", "base pipeline hewn"}, /* hewn: every public header */
 };
 
