@@ -3,8 +3,8 @@
 #include "geom/nearest.h"
 #include "simplify/samples.h"
 
-/* The square of a cosine. */
-static const double least_along = 0.25;
+/* The cosine between triangles that meet in a ridge, and the square of one between what faces the same way. */
+static const double ridge_cosine = 0.92, least_along = 0.25;
 
 /* A triangle with its plane and those across its sides, unit normals that point outward and offsets. */
 typedef struct probe_face {
@@ -200,20 +200,26 @@ static void find_samples(const simplify_samples *samples, simplify_probe *probe)
     }
 }
 
-/* The triangle of the input near a point: of those around the nearest sample, or where that might matter of all. */
-static uint32_t look_back(const simplify_samples *samples, const probe_point *point, simplify_probe *probe)
+/* The triangle of the input near a point: of those around the nearest sample, or of all where that is not near enough to
+ * make no difference. Without `exact` any that is near enough will do. */
+static uint32_t look_back(const simplify_samples *samples, const probe_point *point, bool exact, simplify_probe *probe)
 {
-    const double enough = probe->enough > probe->back ? probe->enough : probe->back;
+    const double enough = fmax(probe->enough, fmax(probe->most, probe->back));
     double least = INFINITY;
-    uint32_t near = HEWN_NONE;
+    uint32_t near = 0;
     for (uint32_t i = samples->rings[point->sample]; i < samples->rings[point->sample + 1]; i++) {
-        const double distance = hewn_view_reach(&samples->input, samples->faces[i], point->at);
+        const uint32_t *corner = samples->input.corners + 3 * (size_t)samples->faces[i];
+        const double distance =
+            hewn_triangle_reach(point->at, samples->positions + 3 * (size_t)corner[0],
+                                samples->positions + 3 * (size_t)corner[1], samples->positions + 3 * (size_t)corner[2]);
         near = distance < least ? samples->faces[i] : near;
         least = distance < least ? distance : least;
+        if (least <= enough && !exact)
+            return near;
     }
     if (!(least <= enough)) {
-        near = hewn_bvh_nearest(&samples->bvh, &samples->input, point->at, near == HEWN_NONE ? 0 : near, &least);
-        probe->back = least > probe->back ? least : probe->back;
+        near = hewn_bvh_nearest(&samples->bvh, &samples->input, point->at, near, &least);
+        probe->back = fmax(least, probe->back);
     }
     return near;
 }
@@ -250,6 +256,18 @@ static bool is_along(const simplify_sample *sample, const probe_face *face)
     return along > 0 && along * along > least_along * simplify_dot(n, n);
 }
 
+/* Whether the side that a triangle shares with the one before may stand out: it does not where the two go on in much the
+ * same way, for then samples of both tell. */
+static bool is_ridge(const simplify_probe *probe, size_t f)
+{
+    const probe_face *face = &probe->faces[f], *last = &probe->faces[f > 0 ? f - 1 : probe->face_count - 1];
+    for (int axis = 0; axis < 3; axis++)
+        if (face->flat || last->flat || face->corners[1][axis] < last->corners[2][axis] ||
+            face->corners[1][axis] > last->corners[2][axis])
+            return true;
+    return simplify_dot(face->planes[3], last->planes[3]) < ridge_cosine;
+}
+
 static hewn_result place_all(const simplify_work *work, const double at[3], simplify_probe *probe)
 {
     const simplify_samples *samples = work->samples;
@@ -262,13 +280,14 @@ static hewn_result place_all(const simplify_work *work, const double at[3], simp
         return HEWN_OK;
     HEWN_TRY(list_points(at, probe));
     find_samples(samples, probe);
-    (void)look_back(samples, &probe->points[0], probe);
+    (void)look_back(samples, &probe->points[0], false, probe);
     for (size_t f = 0; f < probe->face_count; f++) {
-        (void)look_back(samples, &probe->points[1 + 2 * f], probe);
+        if (is_ridge(probe, f))
+            (void)look_back(samples, &probe->points[1 + 2 * f], false, probe);
         const probe_face *face = &probe->faces[f];
         const probe_point *middle = &probe->points[2 + 2 * f];
         if (!face->flat && !is_along(&samples->items[middle->sample], face))
-            probe->turned |= faces_away(samples, look_back(samples, middle, probe), face->planes[3]);
+            probe->turned |= faces_away(samples, look_back(samples, middle, true, probe), face->planes[3]);
     }
     return HEWN_OK;
 }

@@ -28,7 +28,7 @@ static const double turned_factor = 1000;
 static const double growth = 1.4;
 
 /* The distance that is aimed at, in means by cost. */
-static const double aim_factor = 1.5;
+static const double aim_factor = 1.2;
 
 /* --- one queue ---------------------------------------------------------------------------------------------------- */
 
