@@ -75,6 +75,7 @@ static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *pr
         if (!hewn_simplify_may_move(work, v, to))
             continue;
         probe->enough = far_share * job->most;
+        probe->plenty = INFINITY;
         HEWN_TRY(hewn_simplify_probe_move(work, v, to, probe));
         if (probe->turned || probe->after >= probe->before || fmax(probe->most, probe->back) > far_share * job->most)
             continue;

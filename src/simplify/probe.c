@@ -157,6 +157,10 @@ static hewn_result place_samples(const simplify_work *work, uint32_t face, uint3
         probe->after += least;
         if (gap > was * 1.001 && gap > probe->most)
             probe->most = gap;
+        if (probe->most > probe->plenty) {
+            probe->cut = true;
+            break;
+        }
     }
     return HEWN_OK;
 }
@@ -271,12 +275,12 @@ static bool is_ridge(const simplify_probe *probe, size_t f)
 static hewn_result place_all(const simplify_work *work, const double at[3], simplify_probe *probe)
 {
     const simplify_samples *samples = work->samples;
-    for (uint32_t f = 0; f < probe->face_count; f++)
-        HEWN_TRY(place_samples(work, probe->faces[f].face, f, probe));
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < 2 && !probe->cut; i++) /* what has most to lose first */
         if (probe->cleared[i] != HEWN_NONE)
             HEWN_TRY(place_samples(work, probe->cleared[i], HEWN_NONE, probe));
-    if (probe->place_count == 0)
+    for (uint32_t f = 0; f < probe->face_count && !probe->cut; f++)
+        HEWN_TRY(place_samples(work, probe->faces[f].face, f, probe));
+    if (probe->place_count == 0 || probe->cut)
         return HEWN_OK;
     HEWN_TRY(list_points(at, probe));
     find_samples(samples, probe);
@@ -297,7 +301,7 @@ static void begin(simplify_probe *probe)
     probe->face_count = probe->place_count = 0;
     probe->cleared[0] = probe->cleared[1] = HEWN_NONE;
     probe->back = probe->most = probe->before = probe->after = 0;
-    probe->turned = false;
+    probe->turned = probe->cut = false;
 }
 
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe)

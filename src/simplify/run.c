@@ -90,6 +90,12 @@ static float price_of(const simplify_work *work, uint32_t name, const simplify_p
     return (float)fmin(probe->turned ? turned_factor * cost : cost, FLT_MAX);
 }
 
+/* The distance that has a price. */
+static double reach_of(const simplify_work *work, float cost)
+{
+    return work->samples->aim * sqrt(sqrt((double)cost / work->samples->price));
+}
+
 /* Looks what becomes of samples. `*dear`: others are cheaper, the edge's key has grown. Else samples go where they will
  * be. Edges of a complex take theirs along, whatever becomes of them. */
 static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool *dear)
@@ -100,16 +106,19 @@ static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool
     const bool tied = simplify_is_tied(work, plan->gone);
     if (!work->samples)
         return HEWN_OK;
-    front->probe.enough = work->samples->aim * sqrt(sqrt((double)work->key[name] / work->samples->price));
+    const bool priced = tied || work->flags[name] & SIMPLIFY_PROBED;
+    const float next = front->queue.count > 0 ? simplify_item_cost(front->queue.items[0]) : FLT_MAX;
+    front->probe.enough = reach_of(work, work->key[name]);
+    front->probe.plenty = priced ? INFINITY : 1.01 * reach_of(work, fminf(next, front->limit));
     const uint32_t count = hewn_simplify_sides(work, plan, sides);
     for (uint32_t i = 0; i < count; i++) {
         simplify_plan side = *plan;
         side.gone = sides[i].gone;
         side.kept = sides[i].kept;
         HEWN_TRY(hewn_simplify_probe_collapse(work, &side, &front->probe));
-        if (!tied && !(work->flags[name] & SIMPLIFY_PROBED)) {
+        if (!priced) {
             const float cost = price_of(work, name, &front->probe);
-            work->flags[name] |= SIMPLIFY_PROBED;
+            work->flags[name] |= front->probe.cut ? 0 : SIMPLIFY_PROBED;
             *dear =
                 cost > work->key[name] &&
                 (cost > front->limit || (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0]));

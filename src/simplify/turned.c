@@ -20,6 +20,7 @@ static hewn_result choose(simplify_work *work, uint32_t face, simplify_probe *pr
         if (isinf(plan.cost) || plan.far || simplify_is_tied(work, plan.gone) || !hewn_simplify_allowed(work, &plan))
             continue;
         probe->enough = 0;
+        probe->plenty = INFINITY;
         HEWN_TRY(hewn_simplify_probe_collapse(work, &plan, probe));
         const double far = fmax(probe->most, probe->back);
         if (probe->turned || far > *most)
