@@ -5,8 +5,15 @@
 #include "simplify/samples.h"
 #include "simplify/turned.h"
 
-/* The last collapses look at samples: those from so many times the triangles on that are wanted. */
-enum { MORE = 3 };
+/* The last collapses look at samples: those from so many times the triangles on that are wanted. The more, the better
+ * and the slower; it is the most where few triangles are wanted, for then all of this takes little time. */
+static const double least_more = 3, most_more = 4, share = 0.25;
+
+static uint32_t begin_at(uint32_t most, uint32_t target)
+{
+    const double more = fmin(fmax(share * most / target, least_more), most_more) * target;
+    return more < most ? (uint32_t)more : most;
+}
 
 static hewn_result finish(simplify_work *work, uint32_t target, hewn_error *error)
 {
@@ -22,7 +29,7 @@ hewn_result hewn_simplify_balanced(simplify_work *work, const hewn_polygons *inp
     const bool counted = work->wedges && work->wedges->counted > 0; /* attributes have a say in where vertices are */
     if (target == 0 || target > most / 2 || counted)
         return hewn_simplify_run(work, target, error);
-    HEWN_TRY(hewn_simplify_run(work, target > most / MORE ? most : MORE * target, error));
+    HEWN_TRY(hewn_simplify_run(work, begin_at(most, target), error));
     hewn_result result = hewn_simplify_samples_make(work, input, target, &samples, error);
     work->samples = &samples;
     if (result == HEWN_OK)

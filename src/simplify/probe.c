@@ -204,8 +204,8 @@ static void find_samples(const simplify_samples *samples, simplify_probe *probe)
     }
 }
 
-/* The triangle of the input near a point: of those around the nearest sample, or of all where that is not near enough to
- * make no difference. Without `exact` any that is near enough will do. */
+/* The triangle of the input near a point: of those around the nearest sample, or of all where that is not near enough
+ * to make no difference. Without `exact` any that is near enough will do. */
 static uint32_t look_back(const simplify_samples *samples, const probe_point *point, bool exact, simplify_probe *probe)
 {
     const double enough = fmax(probe->enough, fmax(probe->most, probe->back));
@@ -260,8 +260,8 @@ static bool is_along(const simplify_sample *sample, const probe_face *face)
     return along > 0 && along * along > least_along * simplify_dot(n, n);
 }
 
-/* Whether the side that a triangle shares with the one before may stand out: it does not where the two go on in much the
- * same way, for then samples of both tell. */
+/* Whether the side that a triangle shares with the one before may stand out: it does not where the two go on in much
+ * the same way, for then samples of both tell. */
 static bool is_ridge(const simplify_probe *probe, size_t f)
 {
     const probe_face *face = &probe->faces[f], *last = &probe->faces[f > 0 ? f - 1 : probe->face_count - 1];

@@ -34,11 +34,12 @@ typedef struct simplify_probe {
     size_t place_count, place_capacity;
     struct probe_point *points;
     size_t point_capacity;
-    uint32_t cleared[2];  /* triangles that would go; HEWN_NONE */
-    double most;          /* the greatest distance that grew */
-    double enough, plenty;  /* set before: distances below the one make no difference; past the other no more is looked at */
-    bool cut;               /* something is past `plenty` */
-    double back;          /* of the new vertex to the input */
+    uint32_t cleared[2]; /* triangles that would go; HEWN_NONE */
+    double most;         /* the greatest distance that grew */
+    double enough,
+        plenty;  /* set before: distances below the one make no difference; past the other no more is looked at */
+    bool cut;    /* something is past `plenty` */
+    double back; /* of the new vertex to the input */
     double before, after; /* sums of squares of all distances */
     bool turned;          /* a triangle would face away from what is near its middle */
 } simplify_probe;
