@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <time.h>
 
 #include "hewn/check.h"
 #include "hewn/distance.h"
@@ -18,6 +19,7 @@
 #include "simplify_peers.h"
 #include "torus.h"
 
+#include "base/alloc.h"
 #include "base/clock.h"
 #include "geom/nearest.h"
 
@@ -32,10 +34,14 @@ static simplified hewn(const peer_input *input, uint64_t target)
     const hewn_polygons polygons = {input->vertex_count, input->positions, input->triangle_count, NULL, input->indices};
     hewn_simplified made;
     hewn_error error;
-    double begin = hewn_clock_now();
+    const double begin = hewn_clock_now();
+    const clock_t processor = clock();
     if (hewn_polygons_simplify(&polygons, &(hewn_simplify_desc){.faces = target}, &made, NULL, &error) != HEWN_OK)
         give_up(&error);
-    return (simplified){made.vertex_count, made.face_count, made.positions, made.corners, hewn_clock_now() - begin};
+    const double seconds = hewn_clock_now() - begin, all = (double)(clock() - processor) / CLOCKS_PER_SEC;
+    hewn_free(made.vertex_origins);
+    hewn_free(made.face_origins);
+    return (simplified){made.vertex_count, made.face_count, made.positions, made.corners, seconds, all};
 }
 
 /* --- quality ------------------------------------------------------------------------------------------------------ */
@@ -162,7 +168,7 @@ typedef struct bench_request {
 
 static void run(const char *name, const peer_input *input, const bench_request *request)
 {
-    static double seconds[ALL][MOST_RUNS];
+    static double seconds[ALL][MOST_RUNS], processor[ALL][MOST_RUNS];
     quality found[ALL];
     uint64_t left[ALL], target = (uint64_t)(request->ratio * (double)input->triangle_count);
     for (int at = 0; at < request->runs; at++)
@@ -171,6 +177,7 @@ static void run(const char *name, const peer_input *input, const bench_request *
                 continue;
             simplified made = all[i].run(input, target);
             seconds[i][at] = made.seconds;
+            processor[i][at] = made.processor_seconds;
             left[i] = made.triangle_count;
             if (at == 0)
                 found[i] = judge(input, &made, request->quick);
@@ -181,9 +188,11 @@ static void run(const char *name, const peer_input *input, const bench_request *
            (unsigned long long)target, omp_get_max_threads(), request->runs);
     for (int i = 0; i < ALL; i++)
         if (!request->only || strcmp(request->only, all[i].name) == 0)
-            printf("  %-14s %8.3f s  %8llu left, mean %.3e most %.3e, %llu flipped, %llu non-manifold edges\n",
-                   all[i].name, bench_median(seconds[i], request->runs), (unsigned long long)left[i], found[i].mean,
-                   found[i].most, (unsigned long long)found[i].flipped, (unsigned long long)found[i].non_manifold);
+            printf("  %-14s %7.3f s %7.3f of processors %8llu left, mean %.3e most %.3e, %llu flipped, %llu "
+                   "non-manifold edges\n",
+                   all[i].name, bench_median(seconds[i], request->runs), bench_median(processor[i], request->runs),
+                   (unsigned long long)left[i], found[i].mean, found[i].most, (unsigned long long)found[i].flipped,
+                   (unsigned long long)found[i].non_manifold);
     fflush(stdout);
 }
 

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 
 #include "simplify_peers.h"
 
@@ -26,10 +27,11 @@ static Mesh make(const peer_input *input)
     return mesh;
 }
 
-static simplified finish(Mesh &mesh, std::chrono::steady_clock::time_point begin)
+static simplified finish(Mesh &mesh, std::chrono::steady_clock::time_point begin, std::clock_t processor)
 {
     simplified out = {};
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    out.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
     mesh.collect_garbage();
     out.vertex_count = mesh.number_of_vertices();
     out.triangle_count = mesh.number_of_faces();
@@ -50,20 +52,22 @@ simplified cgal_garland_heckbert(const peer_input *input, uint64_t target)
 {
     Mesh mesh = make(input);
     auto begin = std::chrono::steady_clock::now();
+    std::clock_t processor = std::clock();
     simplification::Count_stop_predicate<Mesh> stop(target * 3 / 2);
     simplification::GarlandHeckbert_plane_policies<Mesh, Kernel> policies(mesh);
     simplification::Bounded_normal_change_filter<> filter;
     simplification::edge_collapse(
         mesh, stop,
         CGAL::parameters::get_cost(policies.get_cost()).get_placement(policies.get_placement()).filter(filter));
-    return finish(mesh, begin);
+    return finish(mesh, begin, processor);
 }
 
 simplified cgal_lindstrom_turk(const peer_input *input, uint64_t target)
 {
     Mesh mesh = make(input);
     auto begin = std::chrono::steady_clock::now();
+    std::clock_t processor = std::clock();
     simplification::Count_stop_predicate<Mesh> stop(target * 3 / 2);
     simplification::edge_collapse(mesh, stop);
-    return finish(mesh, begin);
+    return finish(mesh, begin, processor);
 }

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 
 #include "simplify_peers.h"
 
@@ -29,9 +30,11 @@ simplified vtk_quadric(const peer_input *input, uint64_t target)
     filter->SetInputData(data);
     filter->SetTargetReduction(1 - static_cast<double>(target) / static_cast<double>(input->triangle_count));
     auto begin = std::chrono::steady_clock::now();
+    std::clock_t processor = std::clock();
     filter->Update();
     simplified out = {};
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    out.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
     vtkPolyData *result = filter->GetOutput();
     out.vertex_count = static_cast<uint64_t>(result->GetNumberOfPoints());
     out.triangle_count = static_cast<uint64_t>(result->GetNumberOfPolys());

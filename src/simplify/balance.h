@@ -1,4 +1,4 @@
-/* Places that come out further from the input than others get more triangles. */
+/* The last collapses, which keep the greatest distance small. */
 #ifndef HEWN_SRC_SIMPLIFY_BALANCE_H
 #define HEWN_SRC_SIMPLIFY_BALANCE_H
 

@@ -10,19 +10,13 @@ static const double least_cosine = 0.2, least_shape = 0.02, no_shape = 1e-4;
 
 /* --- edges of a complex ------------------------------------------------------------------------------------------- */
 
-/* An edge where fans of a complex meet is there once for each of them. */
-typedef struct edge_side {
-    uint32_t half, gone, kept;
-} edge_side;
-
-/* All that become one with the edge of a plan; 1 where its vertex that goes is not tied. 0: the fans do not agree. */
-static uint32_t list_sides(const simplify_work *work, uint32_t half, uint32_t gone, uint32_t kept,
-                           edge_side sides[SIMPLIFY_MOST_TIED])
+uint32_t hewn_simplify_sides(const simplify_work *work, const simplify_plan *plan,
+                             simplify_side sides[SIMPLIFY_MOST_TIED])
 {
-    const uint32_t group = simplify_group(work, kept);
-    uint32_t count = 0, at = gone;
-    if (!simplify_is_tied(work, gone)) {
-        sides[0] = (edge_side){half, gone, kept};
+    const uint32_t group = simplify_group(work, plan->kept);
+    uint32_t count = 0, at = plan->gone;
+    if (!simplify_is_tied(work, plan->gone)) {
+        sides[0] = (simplify_side){plan->half, plan->gone, plan->kept};
         return 1;
     }
     do {
@@ -30,27 +24,26 @@ static uint32_t list_sides(const simplify_work *work, uint32_t half, uint32_t go
         if (count == SIMPLIFY_MOST_TIED || work->twin[h] != HEWN_NONE)
             return 0;
         if (simplify_group(work, simplify_head(work, h)) == group) {
-            sides[count++] = (edge_side){h, at, simplify_head(work, h)};
+            sides[count++] = (simplify_side){h, at, simplify_head(work, h)};
         } else {
             for (; work->twin[in] != HEWN_NONE; in = simplify_prev(h))
                 h = work->twin[in];
             if (simplify_group(work, work->tail[in]) != group)
                 return 0;
-            sides[count++] = (edge_side){in, at, work->tail[in]};
+            sides[count++] = (simplify_side){in, at, work->tail[in]};
         }
         at = work->tie[at];
-    } while (at != gone);
+    } while (at != plan->gone);
     return count;
 }
 
 /* The sum of both ends' quadrics, of all fans. */
 static simplify_quadric sum_ends(const simplify_work *work, const simplify_plan *plan)
 {
-    edge_side sides[SIMPLIFY_MOST_TIED];
+    simplify_side sides[SIMPLIFY_MOST_TIED];
     simplify_quadric q = work->quadrics[plan->gone];
     simplify_quadric_add(&q, &work->quadrics[plan->kept]);
-    const uint32_t count =
-        simplify_is_tied(work, plan->gone) ? list_sides(work, plan->half, plan->gone, plan->kept, sides) : 0;
+    const uint32_t count = simplify_is_tied(work, plan->gone) ? hewn_simplify_sides(work, plan, sides) : 0;
     for (uint32_t i = 0; i < count; i++)
         if (sides[i].gone != plan->gone) {
             simplify_quadric_add(&q, &work->quadrics[sides[i].gone]);
@@ -289,8 +282,8 @@ static bool complex_allowed(const simplify_work *work, const simplify_plan *plan
 /* The fans of a tied edge. */
 static bool sides_allowed(const simplify_work *work, simplify_plan *plan)
 {
-    edge_side sides[SIMPLIFY_MOST_TIED];
-    const uint32_t count = list_sides(work, plan->half, plan->gone, plan->kept, sides);
+    simplify_side sides[SIMPLIFY_MOST_TIED];
+    const uint32_t count = hewn_simplify_sides(work, plan, sides);
     ring gone, kept;
     plan->slim = false;
     for (uint32_t i = 0; i < count; i++)
@@ -385,7 +378,9 @@ static void close_face(simplify_work *work, uint32_t h, uint32_t *out)
     const uint32_t name_next = simplify_name(work, next), name_prev = simplify_name(work, prev);
     const uint8_t feature = (work->flags[name_next] | work->flags[name_prev]) & SIMPLIFY_FEATURE;
     const float one = work->key[name_next], two = work->key[name_prev];
-    const float key = isinf(one) ? two : isinf(two) ? one : fmaxf(one, two); /* both are lower bounds */
+    const uint8_t raised = SIMPLIFY_SLIM | SIMPLIFY_PROBED;
+    const bool bounds = !(work->flags[name_next] & raised) && !(work->flags[name_prev] & raised);
+    const float key = isinf(one) ? two : isinf(two) ? one : bounds ? fmaxf(one, two) : fminf(one, two);
     if (across_next != HEWN_NONE)
         work->twin[across_next] = across_prev;
     if (across_prev != HEWN_NONE)
@@ -439,7 +434,7 @@ static void join_wedges(simplify_work *work, const simplify_plan *plan)
 }
 
 /* One fan. */
-static uint32_t collapse(simplify_work *work, const edge_side *side, const double place_at[3])
+static uint32_t collapse(simplify_work *work, const simplify_side *side, const double place_at[3])
 {
     const uint32_t gone = side->gone, kept = side->kept, half = side->half, twin = work->twin[half];
     uint32_t first = work->half[gone], h = first;
@@ -469,8 +464,8 @@ static uint32_t collapse(simplify_work *work, const edge_side *side, const doubl
 
 uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan)
 {
-    edge_side sides[SIMPLIFY_MOST_TIED];
-    const uint32_t count = list_sides(work, plan->half, plan->gone, plan->kept, sides);
+    simplify_side sides[SIMPLIFY_MOST_TIED];
+    const uint32_t count = hewn_simplify_sides(work, plan, sides);
     uint32_t removed = 0;
     if (work->wedges)
         join_wedges(work, plan);

@@ -23,6 +23,15 @@ bool hewn_simplify_allowed(const simplify_work *work, simplify_plan *plan);
 /* Whether a vertex may go elsewhere by itself: no triangle around it turns over, away or into a sliver. */
 bool hewn_simplify_may_move(const simplify_work *work, uint32_t v, const double to[3]);
 
+/* An edge where fans of a complex meet is there once for each of them: a half-edge of it, and its ends there. */
+typedef struct simplify_side {
+    uint32_t half, gone, kept;
+} simplify_side;
+
+/* All that become one with the edge of a plan; 1 where its vertex that goes is not tied. 0: the fans do not agree. */
+uint32_t hewn_simplify_sides(const simplify_work *work, const simplify_plan *plan,
+                             simplify_side sides[SIMPLIFY_MOST_TIED]);
+
 /* Does it. Keys around `kept` become lower bounds. Returns how many triangles are gone. */
 uint32_t hewn_simplify_collapse(simplify_work *work, const simplify_plan *plan);
 

@@ -10,159 +10,147 @@
  * where it is, as a share of what pulls it. From this share of the greatest distance on, a place must not get worse. */
 static const double far_weight = 0.2, stay_share = 0.02, far_share = 0.7;
 
+/* Vertices of a part, and how often all are moved. */
+enum { PART = 512, SWEEPS = 2 };
+
 typedef struct fitting {
     simplify_work *work;
-    simplify_gauge *gauge;
-    simplify_gaps *gaps;
-    double *pulls; /* 9 a vertex: a matrix as in quadrics, and a vector */
-    double *before;
-    float *away;
-    uint8_t *turned;
+    double mean, most;
+    uint8_t *inside; /* one a vertex: all its neighbours are of the same part */
 } fitting;
 
-/* A point of the input pulls the corners of its triangle along the normal, each by its share of the point. Shares sum
- * to one, so the sum of shares times squared moves is never less than the square of what they come to together: if each
- * vertex is solved for by itself, squared distances still become less (a majorizer). */
-static void pull(const fitting *job, const double at[3], uint32_t face, double weight)
+/* Samples of one triangle pull its corner `v` along the normal, each by its share of the sample. */
+static void pull(const fitting *job, uint32_t h, simplify_quadric *q, double to[3])
 {
     const simplify_work *work = job->work;
-    const uint32_t *corner = work->tail + 3 * (size_t)face;
-    const double *a = simplify_at(work, corner[0]), *b = simplify_at(work, corner[1]),
-                 *c = simplify_at(work, corner[2]);
-    const double *from[3] = {b, c, a}, *to[3] = {c, a, b};
-    double n[3], away[3], share[3], part[3], sum = 0;
+    const simplify_samples *samples = work->samples;
+    const double *a = simplify_at(work, work->tail[h]), *b = simplify_at(work, simplify_head(work, h)),
+                 *c = simplify_at(work, work->tail[simplify_prev(h)]);
+    double n[3];
     simplify_area_vector(a, b, c, n);
     const double square = simplify_dot(n, n);
     if (!(square > 0))
         return;
-    for (int k = 0; k < 3; k++) {
-        simplify_area_vector(at, from[k], to[k], part);
-        share[k] = fmax(simplify_dot(part, n), 0);
-        sum += share[k];
-    }
-    simplify_between(a, at, away);
-    const double height = simplify_dot(away, n) / square; /* times n is the way to the point */
-    for (int k = 0; k < 3 && sum > 0; k++) {
-        double *to_sum = job->pulls + 9 * (size_t)corner[k];
-        const double w = weight * share[k] / sum, x = w / square;
-        to_sum[0] += x * n[0] * n[0];
-        to_sum[1] += x * n[0] * n[1];
-        to_sum[2] += x * n[0] * n[2];
-        to_sum[3] += x * n[1] * n[1];
-        to_sum[4] += x * n[1] * n[2];
-        to_sum[5] += x * n[2] * n[2];
+    for (uint32_t s = samples->first[h / 3]; s != HEWN_NONE; s = samples->items[s].next) {
+        const double *at = samples->items[s].at;
+        double part[3], away[3];
+        simplify_area_vector(at, b, c, part);
+        double share = simplify_dot(part, n) / square;
+        share = share < 0 ? 0 : share > 1 ? 1 : share;
+        simplify_between(a, at, away);
+        const double height = simplify_dot(away, n) / square; /* times n is the way to the sample */
+        const double times = (double)samples->items[s].gap / job->mean;
+        const double weight = 1 + far_weight * times * times, x = weight * share * share / square;
+        q->a[0] += x * n[0] * n[0];
+        q->a[1] += x * n[0] * n[1];
+        q->a[2] += x * n[0] * n[2];
+        q->a[3] += x * n[1] * n[1];
+        q->a[4] += x * n[1] * n[2];
+        q->a[5] += x * n[2] * n[2];
         for (int axis = 0; axis < 3; axis++)
-            to_sum[6 + axis] += w * height * n[axis];
+            to[axis] += weight * share * height * n[axis];
     }
 }
 
-static double mean_gap(const simplify_gauge *gauge)
-{
-    double sum = 0;
-    uint64_t count = 0;
-    for (uint32_t v = 0; v < gauge->work->input_count; v += gauge->step)
-        if (gauge->near[v] != HEWN_NONE) {
-            sum += (double)gauge->gap[v];
-            count++;
-        }
-    return count > 0 ? sum / (double)count : 0;
-}
-
-static void pull_all(const fitting *job)
-{
-    const simplify_gauge *gauge = job->gauge;
-    const double mean = mean_gap(gauge);
-    memset(job->pulls, 0, job->work->vertex_count * 9 * sizeof *job->pulls);
-    for (uint32_t v = 0; v < job->work->input_count && mean > 0; v += gauge->step) {
-        if (gauge->near[v] == HEWN_NONE)
-            continue;
-        const double times = (double)gauge->gap[v] / mean;
-        pull(job, gauge->positions + 3 * (size_t)v, gauge->near[v], 1 + far_weight * times * times);
-    }
-}
-
-/* One after the other, so that no two together turn a triangle over. */
-static void move_all(const fitting *job)
+static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *probe)
 {
     simplify_work *work = job->work;
-    for (uint32_t v = 0; v < work->vertex_count; v++) {
-        simplify_quadric q = {0};
-        const double *pulls = job->pulls + 9 * (size_t)v;
-        double move[3], to[3];
-        if (work->rank[v] != SIMPLIFY_SMOOTH)
-            continue;
-        memcpy(q.a, pulls, sizeof q.a);
-        const double stay = stay_share * (q.a[0] + q.a[3] + q.a[5]);
-        q.a[0] += stay;
-        q.a[3] += stay;
-        q.a[5] += stay;
-        if (!simplify_quadric_solve(&q, pulls + 6, move))
-            continue;
-        const double length = sqrt(simplify_dot(move, move)), most = (double)job->gaps->away[v];
-        for (int axis = 0; axis < 3; axis++)
-            to[axis] = simplify_at(work, v)[axis] + move[axis] * (length > most ? most / length : 1);
-        if (hewn_simplify_may_move(work, v, to))
-            memcpy(work->positions + 3 * (size_t)v, to, sizeof to);
-    }
-}
-
-/* A vertex and those around it. */
-static void put_back(const fitting *job, uint32_t v)
-{
-    simplify_work *work = job->work;
+    simplify_quadric q = {0};
+    double pulled[3] = {0}, move[3], to[3];
     const uint32_t first = work->half[v];
     uint32_t h = first;
-    if (work->rank[v] == SIMPLIFY_APART)
-        return;
-    memcpy(work->positions + 3 * (size_t)v, job->before + 3 * (size_t)v, 3 * sizeof *job->before);
     do {
-        const uint32_t in = simplify_prev(h), ends[2] = {simplify_head(work, h), work->tail[in]};
-        for (int k = 0; k < 2; k++)
-            memcpy(work->positions + 3 * (size_t)ends[k], job->before + 3 * (size_t)ends[k], 3 * sizeof *job->before);
-        h = work->twin[in];
+        pull(job, h, &q, pulled);
+        h = simplify_turn(work, h);
     } while (h != HEWN_NONE && h != first);
-}
-
-static bool allocate(fitting *job)
-{
-    const size_t verts = job->work->vertex_count;
-    job->pulls = hewn_alloc(verts, 9 * sizeof *job->pulls);
-    job->before = hewn_alloc(verts, 3 * sizeof *job->before);
-    job->away = hewn_alloc(verts, sizeof *job->away);
-    job->turned = hewn_alloc(verts, 1);
-    return job->pulls && job->before && job->away && job->turned;
-}
-
-static hewn_result fit(fitting *job, hewn_error *error)
-{
-    const size_t verts = job->work->vertex_count;
-    simplify_gaps *gaps = job->gaps;
-    const simplify_gaps was = *gaps;
-    const double far = far_share * was.most;
-    memcpy(job->before, job->work->positions, verts * 3 * sizeof *job->before);
-    memcpy(job->away, gaps->away, verts * sizeof *job->away);
-    memcpy(job->turned, gaps->turned, verts);
-    pull_all(job);
-    move_all(job);
-    HEWN_TRY(hewn_simplify_measure(job->gauge, gaps, error));
-    for (uint32_t v = 0; v < verts; v++)
-        if (((double)gaps->away[v] > far && gaps->away[v] > job->away[v]) || (gaps->turned[v] && !job->turned[v]))
-            put_back(job, v);
-    HEWN_TRY(hewn_simplify_measure(job->gauge, gaps, error));
-    if (gaps->most <= was.most && gaps->flips <= was.flips)
+    const double stay = stay_share * (q.a[0] + q.a[3] + q.a[5]);
+    q.a[0] += stay;
+    q.a[3] += stay;
+    q.a[5] += stay;
+    if (!simplify_quadric_solve(&q, pulled, move))
         return HEWN_OK;
-    memcpy(job->work->positions, job->before, verts * 3 * sizeof *job->before);
-    return hewn_simplify_measure(job->gauge, gaps, error);
+    for (int attempt = 0; attempt < 2; attempt++) {
+        for (int axis = 0; axis < 3; axis++)
+            to[axis] = simplify_at(work, v)[axis] + move[axis] / (attempt + 1);
+        if (!hewn_simplify_may_move(work, v, to))
+            continue;
+        probe->enough = far_share * job->most;
+        probe->plenty = INFINITY;
+        HEWN_TRY(hewn_simplify_probe_move(work, v, to, probe));
+        if (probe->turned || probe->after >= probe->before || fmax(probe->most, probe->back) > far_share * job->most)
+            continue;
+        memcpy(work->positions + 3 * (size_t)v, to, sizeof to);
+        hewn_simplify_probe_settle(work, probe);
+        break;
+    }
+    return HEWN_OK;
 }
 
-hewn_result hewn_simplify_fit(simplify_work *work, simplify_gauge *gauge, simplify_gaps *gaps, hewn_error *error)
+static void find_gaps(fitting *job)
 {
-    fitting job = {.work = work, .gauge = gauge, .gaps = gaps};
-    hewn_result result =
-        allocate(&job) ? fit(&job, error) : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
-    hewn_free(job.pulls);
-    hewn_free(job.before);
-    hewn_free(job.away);
-    hewn_free(job.turned);
-    return result;
+    const simplify_samples *samples = job->work->samples;
+    double sum = 0;
+    job->most = 0;
+    for (uint32_t s = 0; s < samples->count; s++) {
+        sum += (double)samples->items[s].gap;
+        job->most = fmax(job->most, (double)samples->items[s].gap);
+    }
+    job->mean = samples->count > 0 ? sum / samples->count : 0;
+}
+
+static void find_inside(const fitting *job)
+{
+    const simplify_work *work = job->work;
+#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
+    for (uint32_t v = 0; v < work->vertex_count; v++) {
+        const uint32_t first = work->half[v];
+        uint32_t h = first;
+        job->inside[v] = work->rank[v] == SIMPLIFY_SMOOTH;
+        while (job->inside[v]) {
+            const uint32_t in = simplify_prev(h);
+            job->inside[v] = simplify_head(work, h) / PART == v / PART && work->tail[in] / PART == v / PART;
+            h = work->twin[in];
+            if (h == first)
+                break;
+        }
+    }
+}
+
+/* Those inside parts first, which touch nothing of other parts; then, one after the other, those between. */
+static hewn_result sweep(const fitting *job)
+{
+    const simplify_work *work = job->work;
+    const uint32_t parts = (work->vertex_count + PART - 1) / PART;
+    int failed = 0;
+#pragma omp parallel reduction(| : failed)
+    {
+        simplify_probe probe = {0};
+#pragma omp for schedule(dynamic)
+        for (uint32_t p = 0; p < parts; p++)
+            for (uint32_t v = p * PART; v < work->vertex_count && v < (p + 1) * PART; v++)
+                if (job->inside[v])
+                    failed |= fit_vertex(job, v, &probe) != HEWN_OK;
+        hewn_simplify_probe_release(&probe);
+    }
+    simplify_probe probe = {0};
+    for (uint32_t v = 0; v < work->vertex_count; v++)
+        if (!job->inside[v] && work->rank[v] == SIMPLIFY_SMOOTH)
+            failed |= fit_vertex(job, v, &probe) != HEWN_OK;
+    hewn_simplify_probe_release(&probe);
+    return failed ? HEWN_OUT_OF_MEMORY : HEWN_OK;
+}
+
+hewn_result hewn_simplify_fit(simplify_work *work, hewn_error *error)
+{
+    fitting job = {.work = work, .inside = hewn_alloc(work->vertex_count, 1)};
+    hewn_result result = job.inside ? HEWN_OK : HEWN_OUT_OF_MEMORY;
+    if (result == HEWN_OK)
+        find_inside(&job);
+    for (int i = 0; i < SWEEPS && result == HEWN_OK; i++) {
+        find_gaps(&job);
+        if (job.mean > 0)
+            result = sweep(&job);
+    }
+    hewn_free(job.inside);
+    return result == HEWN_OK ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
 }

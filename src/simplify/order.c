@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "simplify/work.h"
+#include "simplify/samples.h"
 
 enum { AXIS_BITS = 14, DIGIT_BITS = 11, DIGITS = 4 };
 
@@ -194,7 +194,9 @@ hewn_result hewn_simplify_order(simplify_work *work, uint32_t round, hewn_error 
         number[order[i]] = i;
     order_of_faces = done ? order_faces(work, number, verts) : NULL;
     done = order_of_faces && move_halves(work, order_of_faces, number) &&
-           move((void **)&work->face_origins, sizeof *work->face_origins, order_of_faces, work->live_faces);
+           move((void **)&work->face_origins, sizeof *work->face_origins, order_of_faces, work->live_faces) &&
+           (!work->samples ||
+            move((void **)&work->samples->first, sizeof *work->samples->first, order_of_faces, work->live_faces));
     hewn_free(order_of_faces);
     for (uint32_t v = 0; done && work->tie && v < work->vertex_count; v++)
         if (work->half[v] != SIMPLIFY_GONE)

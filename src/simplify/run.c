@@ -5,13 +5,30 @@
 #include "base/progress.h"
 #include "simplify/collapse.h"
 #include "simplify/queue.h"
+#include "simplify/samples.h"
 
-/* Vertices of a part: what its collapses touch fits in a core's second cache. */
-enum { PART = 4096, MOST_ROUNDS = 40, BINS = 1 << 16 };
+/* Vertices of a part: what its collapses touch fits in a core's second cache. With samples there is more to do for
+ * each, and fewer of them. */
+enum { PART = 4096, PROBED_PART = 512, MOST_ROUNDS = 40, BINS = 1 << 16 };
+
+static uint32_t part_of(const simplify_work *work)
+{
+    return work->samples ? PROBED_PART : PART;
+}
 
 /* How much more a collapse that makes a sliver costs. In what is flat that is little still: there, only slivers may be
  * left to make. */
 static const float slim_factor = 100;
+
+/* And one that turns a triangle away from the input. */
+static const double turned_factor = 1000;
+
+/* Costs grow while edges go: the last ones to go cost about the square of how many times the triangles are to be less,
+ * times what as many edges cost less than now. Limits of rounds are somewhat less than that. */
+static const double growth = 1.4;
+
+/* The distance that is aimed at, in means by cost. */
+static const double aim_factor = 1.2;
 
 /* --- one queue ---------------------------------------------------------------------------------------------------- */
 
@@ -23,6 +40,7 @@ typedef struct edge_front {
     float limit;           /* the greatest cost */
     uint32_t budget;       /* the most triangles to remove */
     uint32_t removed;
+    simplify_probe probe;
 } edge_front;
 
 static bool may_queue(const edge_front *front, uint32_t name)
@@ -63,6 +81,56 @@ static hewn_result requeue_around(edge_front *front, uint32_t v)
     return HEWN_OK;
 }
 
+/* A collapse costs at least what its distance does, by the fourth power of that: so what is far away waits, and what is
+ * near waits for nothing. */
+static float price_of(const simplify_work *work, uint32_t name, const simplify_probe *probe)
+{
+    const double far = fmax(probe->most, probe->back) / work->samples->aim;
+    const double cost = fmax((double)work->key[name], work->samples->price * (far * far) * (far * far));
+    return (float)fmin(probe->turned ? turned_factor * cost : cost, FLT_MAX);
+}
+
+/* The distance that has a price. */
+static double reach_of(const simplify_work *work, float cost)
+{
+    return work->samples->aim * sqrt(sqrt((double)cost / work->samples->price));
+}
+
+/* Looks what becomes of samples. `*dear`: others are cheaper, the edge's key has grown. Else samples go where they will
+ * be. Edges of a complex take theirs along, whatever becomes of them. */
+static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool *dear)
+{
+    simplify_work *work = front->work;
+    const uint32_t name = plan->half;
+    simplify_side sides[SIMPLIFY_MOST_TIED];
+    const bool tied = simplify_is_tied(work, plan->gone);
+    if (!work->samples)
+        return HEWN_OK;
+    const bool priced = tied || work->flags[name] & SIMPLIFY_PROBED;
+    const float next = front->queue.count > 0 ? simplify_item_cost(front->queue.items[0]) : FLT_MAX;
+    front->probe.enough = reach_of(work, work->key[name]);
+    front->probe.plenty = priced ? INFINITY : 1.01 * reach_of(work, fminf(next, front->limit));
+    const uint32_t count = hewn_simplify_sides(work, plan, sides);
+    for (uint32_t i = 0; i < count; i++) {
+        simplify_plan side = *plan;
+        side.gone = sides[i].gone;
+        side.kept = sides[i].kept;
+        HEWN_TRY(hewn_simplify_probe_collapse(work, &side, &front->probe));
+        if (!priced) {
+            const float cost = price_of(work, name, &front->probe);
+            work->flags[name] |= front->probe.cut ? 0 : SIMPLIFY_PROBED;
+            *dear =
+                cost > work->key[name] &&
+                (cost > front->limit || (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0]));
+            work->key[name] = fmaxf(work->key[name], cost);
+            if (*dear)
+                return HEWN_OK;
+        }
+        hewn_simplify_probe_settle(work, &front->probe);
+    }
+    return HEWN_OK;
+}
+
 /* Collapses the edge of the least item, or finds that there is nothing to do. */
 static hewn_result step(edge_front *front)
 {
@@ -77,7 +145,7 @@ static hewn_result step(edge_front *front)
     if (!(work->flags[name] & SIMPLIFY_FRESH)) {
         const float cost = (float)plan.cost;
         work->key[name] = cost;
-        work->flags[name] = (uint8_t)((work->flags[name] & ~SIMPLIFY_SLIM) | SIMPLIFY_FRESH);
+        work->flags[name] = (uint8_t)((work->flags[name] & ~(SIMPLIFY_SLIM | SIMPLIFY_PROBED)) | SIMPLIFY_FRESH);
         if (cost > front->limit || isinf(cost))
             return HEWN_OK;
         if (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0])
@@ -92,6 +160,10 @@ static hewn_result step(edge_front *front)
         work->flags[name] |= SIMPLIFY_SLIM;
         return may_queue(front, name) ? enqueue(front, name) : HEWN_OK;
     }
+    bool dear = false;
+    HEWN_TRY(probe_plan(front, &plan, &dear));
+    if (dear)
+        return may_queue(front, name) ? enqueue(front, name) : HEWN_OK;
     front->removed += hewn_simplify_collapse(work, &plan);
     for (uint32_t v = plan.kept;;) {
         if (work->rank[v] != SIMPLIFY_APART)
@@ -115,6 +187,7 @@ static hewn_result drain(edge_front *front)
 /* Marks vertices none of whose neighbours are of another part. */
 static void find_inside(const simplify_work *work, uint8_t *inside)
 {
+    const uint32_t part = part_of(work);
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         uint32_t first = work->half[v], h = first;
@@ -123,7 +196,7 @@ static void find_inside(const simplify_work *work, uint8_t *inside)
             continue;
         do {
             uint32_t in = simplify_prev(h);
-            inside[v] &= simplify_head(work, h) / PART == v / PART && work->tail[in] / PART == v / PART;
+            inside[v] &= simplify_head(work, h) / part == v / part && work->tail[in] / part == v / part;
             h = work->twin[in];
         } while (h != HEWN_NONE && h != first);
     }
@@ -158,13 +231,14 @@ typedef struct part_list {
 static void split(part_list *parts)
 {
     const simplify_work *work = parts->work;
-    parts->count = (work->vertex_count + PART - 1) / PART;
+    const uint32_t size = part_of(work);
+    parts->count = (work->vertex_count + size - 1) / size;
     uint32_t part = 0;
     for (uint32_t f = 0; f < work->face_count; f++) {
         const uint32_t *corner = work->tail + 3 * (size_t)f;
         uint32_t least = corner[0] < corner[1] ? corner[0] : corner[1];
         least = corner[2] < least ? corner[2] : least;
-        while (part <= least / PART)
+        while (part <= least / size)
             parts->faces[part++] = f;
     }
     while (part <= parts->count)
@@ -223,6 +297,7 @@ static hewn_result run_parts(const part_list *parts, uint32_t wanted, uint32_t *
             sum += front.removed;
         }
         hewn_free(front.queue.items);
+        hewn_simplify_probe_release(&front.probe);
     }
     *removed = sum;
     return failed ? HEWN_OUT_OF_MEMORY : HEWN_OK;
@@ -239,7 +314,7 @@ static void recount(simplify_work *work)
 static hewn_result run_round(simplify_work *work, uint32_t target, uint32_t *removed)
 {
     part_list parts = {.work = work};
-    const uint32_t most_parts = work->vertex_count / PART + 2, wanted = work->live_faces - target;
+    const uint32_t most_parts = work->vertex_count / part_of(work) + 2, wanted = work->live_faces - target;
     uint32_t *bins = hewn_alloc(BINS, sizeof *bins);
     parts.inside = hewn_alloc(work->vertex_count, 1);
     parts.faces = hewn_alloc(most_parts, sizeof *parts.faces);
@@ -249,6 +324,7 @@ static hewn_result run_round(simplify_work *work, uint32_t target, uint32_t *rem
         find_inside(work, parts.inside);
         split(&parts);
         parts.limit = find_limit(work, wanted, bins);
+        parts.limit = (float)fmin((double)parts.limit * pow((double)work->live_faces / target, growth), FLT_MAX);
         count_edges(&parts);
         result = run_parts(&parts, wanted, removed);
         work->live_faces -= *removed;
@@ -283,24 +359,44 @@ static hewn_result finish(simplify_work *work, uint32_t target)
     if (result == HEWN_OK)
         result = drain(&front);
     hewn_free(front.queue.items);
+    hewn_simplify_probe_release(&front.probe);
     work->live_faces -= front.removed;
     recount(work);
     return result;
 }
 
+/* What the last collapses will cost, from what they cost now, and how far away things would be if they cost that. */
+static bool set_aim(simplify_work *work, uint32_t target)
+{
+    uint32_t *bins = hewn_alloc(BINS, sizeof *bins);
+    double weight = 0;
+    if (!bins)
+        return false;
+    for (uint32_t v = 0; v < work->vertex_count; v++)
+        weight += work->quadrics[v].weight;
+    const double share = (double)work->live_faces / target;
+    const double last = fmax((double)find_limit(work, work->live_faces - target, bins) * share * share, DBL_MIN);
+    work->samples->price = last;
+    work->samples->aim = weight > 0 ? aim_factor * sqrt(last * target / (2 * weight)) : 1;
+    hewn_free(bins);
+    return true;
+}
+
 hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, hewn_error *error)
 {
     const uint32_t began = work->live_faces;
+    if (work->samples && target < began && !set_aim(work, target))
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     for (uint32_t round = 0; round < MOST_ROUNDS && work->live_faces > target; round++) {
         HEWN_TRY(hewn_progress_report(work->desc->progress, "simplify",
                                       (double)(began - work->live_faces) / (double)(began - target + 1), error));
         HEWN_TRY(hewn_simplify_order(work, round, error));
-        if (work->vertex_count <= 2 * PART || (work->live_faces - target) < began / 50)
+        if (work->vertex_count <= 2 * part_of(work) || (work->live_faces - target) < began / 50)
             break;
         uint32_t removed = 0, wanted = work->live_faces - target;
         if (run_round(work, target, &removed) != HEWN_OK)
             return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
-        if (removed < wanted / 20)
+        if (removed < wanted / 10)
             break;
     }
     if (work->live_faces > target) {

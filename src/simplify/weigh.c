@@ -25,39 +25,7 @@ static void add_feature(simplify_quadric *q, const double from[3], const double 
     simplify_quadric_add_plane(q, across, from, feature_weight * length * length);
 }
 
-enum { BLOCK = 4096 };
-
-/* In blocks, so that the sum does not depend on threads. */
-static hewn_result find_mean_area(const simplify_work *work, double *out, hewn_error *error)
-{
-    const uint32_t blocks = work->face_count / BLOCK + 1;
-    double sum = 0, *sums = hewn_alloc_zero(blocks, sizeof *sums);
-    if (!sums)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
-#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
-    for (uint32_t b = 0; b < blocks; b++)
-        for (uint32_t f = b * BLOCK; f < work->face_count && f < (b + 1) * BLOCK; f++) {
-            const uint32_t *corner = work->tail + 3 * (size_t)f;
-            double normal[3];
-            simplify_area_vector(simplify_at(work, corner[0]), simplify_at(work, corner[1]),
-                                 simplify_at(work, corner[2]), normal);
-            sums[b] += sqrt(simplify_dot(normal, normal)) / 2;
-        }
-    for (uint32_t b = 0; b < blocks; b++)
-        sum += sums[b];
-    hewn_free(sums);
-    *out = work->face_count > 0 ? sum / work->face_count : 0;
-    return HEWN_OK;
-}
-
-/* A triangle counts by the fourth root of its area times the mean of all to the third: by areas alone the tip of what
- * is thin counts for next to nothing, and the greatest distance comes to be there. */
-static double weigh_area(bool counted, double area, double mean_area)
-{
-    return counted ? area : sqrt(mean_area * sqrt(mean_area * area)); /* attributes are weighed by areas */
-}
-
-static void weigh_vertex(simplify_work *work, double mean_area, uint32_t v)
+static void weigh_vertex(simplify_work *work, uint32_t v)
 {
     simplify_quadric q = {0};
     double facing[3] = {0};
@@ -73,7 +41,7 @@ static void weigh_vertex(simplify_work *work, double mean_area, uint32_t v)
         simplify_area_vector(at, b, c, normal);
         for (int axis = 0; axis < 3; axis++)
             facing[axis] += normal[axis];
-        const double weight = weigh_area(counted, unit(normal) / 2, mean_area);
+        const double weight = unit(normal) / 2;
         simplify_quadric_add_plane(&q, normal, at, weight);
         simplify_quadric_add_point(&q, at, weight * (counted ? stay_with_attributes : stay_weight));
         q.weight += weight;
@@ -94,18 +62,16 @@ void hewn_simplify_key(simplify_work *work)
     for (uint32_t h = 0; h < 3 * work->face_count; h++)
         if (simplify_name(work, h) == h) {
             work->key[h] = (float)hewn_simplify_plan(work, h).cost;
-            work->flags[h] = (uint8_t)((work->flags[h] & ~SIMPLIFY_SLIM) | SIMPLIFY_FRESH);
+            work->flags[h] = (uint8_t)((work->flags[h] & ~(SIMPLIFY_SLIM | SIMPLIFY_PROBED)) | SIMPLIFY_FRESH);
         }
 }
 
 hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error)
 {
     HEWN_TRY(hewn_simplify_weigh_wedges(work, error));
-    double mean_area;
-    HEWN_TRY(find_mean_area(work, &mean_area, error));
 #pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t v = 0; v < work->vertex_count; v++)
-        weigh_vertex(work, mean_area, v);
+        weigh_vertex(work, v);
     hewn_simplify_key(work);
     return HEWN_OK;
 }

@@ -38,7 +38,8 @@ enum {
     SIMPLIFY_FEATURE = 1,
     SIMPLIFY_FRESH = 2,  /* its key is that of its ends as they are; else it is a lower bound */
     SIMPLIFY_QUEUED = 4, /* waits in a queue */
-    SIMPLIFY_SLIM = 8    /* its collapse makes a sliver, which its key was raised for */
+    SIMPLIFY_SLIM = 8,   /* its collapse makes a sliver, which its key was raised for */
+    SIMPLIFY_PROBED = 16 /* its key was raised to what the collapse does to samples, if that is more */
 };
 
 typedef struct simplify_work {
@@ -61,11 +62,12 @@ typedef struct simplify_work {
 
     uint32_t face_count, live_faces;
     uint32_t *tail, *twin;
-    float *key;              /* cost at the name of each edge */
-    uint8_t *flags;          /* likewise */
-    uint32_t *face_origins;  /* the input's triangle */
-    simplify_wedges *wedges; /* NULL: no attributes; the caller's */
-    uint32_t *wedge;         /* of the corner at each half-edge's tail */
+    float *key;                       /* cost at the name of each edge */
+    uint8_t *flags;                   /* likewise */
+    uint32_t *face_origins;           /* the input's triangle */
+    simplify_wedges *wedges;          /* NULL: no attributes; the caller's */
+    uint32_t *wedge;                  /* of the corner at each half-edge's tail */
+    struct simplify_samples *samples; /* NULL: none; not owned */
 
     uint32_t input_count;
     uint32_t *into; /* of each of the input's vertices: itself, or the one that it was joined to */

@@ -1,0 +1,64 @@
+/* Points of the input, each kept with a triangle of the simplified mesh that is near it: so what a collapse does to
+ * the distance is known before it is done. As in Klein, Liebich and Strasser 1996, 'Mesh reduction with error
+ * control', the distance to the triangles around stands for that to the whole surface, so it is never too small. */
+#ifndef HEWN_SRC_SIMPLIFY_SAMPLES_H
+#define HEWN_SRC_SIMPLIFY_SAMPLES_H
+
+#include "geom/bvh.h"
+#include "simplify/collapse.h"
+
+typedef struct simplify_sample {
+    double at[3];    /* in coordinates of the work */
+    float normal[3]; /* area vector of the input's triangles around; may be zero */
+    float gap;       /* to the mesh: at most this */
+    uint32_t next;   /* of the same triangle; HEWN_NONE */
+} simplify_sample;
+
+typedef struct simplify_samples {
+    simplify_sample *items;
+    uint32_t count;
+    uint32_t *first;         /* one a triangle; HEWN_NONE */
+    uint32_t *rings, *faces; /* the input's triangles around each sample: where they begin, with one more at the end */
+    double *positions;       /* of the input's vertices, in coordinates of the work */
+    hewn_bvh bvh;            /* of the input */
+    hewn_triangle_view input;
+    double aim, price; /* a collapse that comes to `aim` costs at least `price` */
+} simplify_samples;
+
+/* What the mesh would be around a collapse or a move, and where samples would be then. Zero is an empty one; its arrays
+ * grow and are used again. */
+typedef struct simplify_probe {
+    struct probe_face *faces; /* as they would be */
+    size_t face_count, face_capacity;
+    struct probe_place *places;
+    size_t place_count, place_capacity;
+    struct probe_point *points;
+    size_t point_capacity;
+    uint32_t cleared[2]; /* triangles that would go; HEWN_NONE */
+    double most;         /* the greatest distance that grew */
+    double enough,
+        plenty;  /* set before: distances below the one make no difference; past the other no more is looked at */
+    bool cut;    /* something is past `plenty` */
+    double back; /* of the new vertex to the input */
+    double before, after; /* sums of squares of all distances */
+    bool turned;          /* a triangle would face away from what is near its middle */
+} simplify_probe;
+void hewn_simplify_probe_release(simplify_probe *probe);
+
+/* One sample for each of the input's vertices, or for each so-many-th where there are many for `target` triangles.
+ * `work` must be in order. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_samples_make(const simplify_work *work, const hewn_polygons *input, uint32_t target,
+                                       simplify_samples *out, hewn_error *error);
+void hewn_simplify_samples_release(simplify_samples *samples);
+
+/* HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe);
+hewn_result hewn_simplify_probe_move(const simplify_work *work, uint32_t v, const double to[3], simplify_probe *probe);
+
+/* Whether a triangle faces away from the input's triangle that is nearest to its middle. */
+bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face);
+
+/* Samples go to where the probe found them, just before or after the collapse or move is done. */
+void hewn_simplify_probe_settle(const simplify_work *work, const simplify_probe *probe);
+
+#endif
