@@ -39,7 +39,7 @@ static uint64_t run_hewn(const char *path, double *read, double *mesh)
     hewn_error error = {0};
     hewn_volume volume;
     hewn_triangles triangles;
-    hewn_volume_read_desc how = {0};
+    hewn_volume_read_desc how = {.blocks = true};
     hewn_volume_extract_desc desc = {0};
     double begin = hewn_clock_now();
     stop_on(hewn_volume_read(path, &how, &volume, &error), &error);

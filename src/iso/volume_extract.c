@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "iso/bodies.h"
+#include "iso/lattice_blocks.h"
 #include "iso/marching_cubes.h"
 
 /* The coarsest that floats may be: as a part of a voxel. */
@@ -164,7 +165,8 @@ hewn_result hewn_volume_extraction_begin(const hewn_volume *volume, const hewn_v
     lattice->table = run->table.words;
     run->stats.method = method;
     run->stats.below = !lattice->above;
-    return result;
+    HEWN_TRY(result);
+    return volume->blocks ? hewn_lattice_blocks_create(lattice, error) : HEWN_OK;
 }
 
 void hewn_volume_extraction_free_slab(hewn_volume_extraction *run)
@@ -174,11 +176,16 @@ void hewn_volume_extraction_free_slab(hewn_volume_extraction *run)
     hewn_free(lattice->rows);
     lattice->inside = NULL;
     lattice->rows = NULL;
+    if (lattice->blocks) {
+        hewn_free(lattice->blocks->rows);
+        lattice->blocks->rows = NULL;
+    }
 }
 
 void hewn_volume_extraction_clear(hewn_volume_extraction *run)
 {
     hewn_volume_extraction_free_slab(run);
+    hewn_lattice_blocks_destroy(&run->lattice);
     hewn_mc33_table_destroy(&run->table);
 }
 
@@ -197,6 +204,8 @@ uint64_t hewn_volume_extraction_bytes(const hewn_volume_extraction *run, uint32_
     hewn_lattice slab = run->lattice;
     slab.begin = begin;
     slab.end = end;
+    if (slab.blocks)
+        return hewn_lattice_blocks_row_bytes(&slab, begin, end);
     return sign_words(&slab) * sizeof *slab.inside + row_count(&slab) * sizeof *slab.rows;
 }
 
@@ -206,6 +215,8 @@ hewn_result hewn_volume_extraction_lay(hewn_volume_extraction *run, uint32_t beg
     hewn_volume_extraction_free_slab(run);
     lattice->begin = begin;
     lattice->end = end;
+    if (lattice->blocks)
+        return hewn_lattice_blocks_lay(lattice, error);
     lattice->inside = hewn_alloc(sign_words(lattice), sizeof *lattice->inside);
     lattice->rows = hewn_alloc(row_count(lattice), sizeof *lattice->rows);
     if (!lattice->inside || !lattice->rows)

@@ -104,6 +104,7 @@ static hewn_result load(volume_job *job, hewn_error *error)
     hewn_volume_report *report = job->report;
     hewn_volume_read_desc read = desc->read;
     read.progress = desc->progress;
+    read.blocks = !desc->filter; /* filters write samples that lie in a row */
     hewn_stage_begin(&job->stages);
     report->from = read.format != HEWN_VOLUME_UNKNOWN ? read.format : hewn_volume_format_of_file(desc->input);
     HEWN_TRY(read_within(job, &read, error));

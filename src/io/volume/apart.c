@@ -84,16 +84,23 @@ static void copy_text(char out[256], const char *text)
     snprintf(out, 256, "%s", text ? text : "");
 }
 
+static uint64_t bytes_of(const hewn_volume *volume)
+{
+    if (volume->blocks)
+        return volume->memory_length;
+    return hewn_volume_frame_size(volume) * volume->frame_count * hewn_voxel_size(volume->type);
+}
+
 /* Sends the reply, and the samples unless the reader wrote them into the shared file itself. */
 static bool send(const hewn_apart *job, int file, const reply *answer)
 {
     char page[SAMPLES_AT] = {0};
     memcpy(page, answer, sizeof *answer);
     if (job->source && answer->result == HEWN_OK && answer->volume.mapped &&
-        answer->volume.samples == answer->volume.memory && answer->volume.memory_length == answer->sample_bytes)
+        (answer->volume.blocks || answer->volume.samples == answer->volume.memory) && answer->volume.memory_length == answer->sample_bytes)
         return pwrite(file, page, sizeof page, 0) == (ssize_t)sizeof page;
     return ftruncate(file, 0) == 0 && write_all(file, page, sizeof page) &&
-           write_all(file, answer->volume.samples, answer->sample_bytes);
+           write_all(file, answer->volume.blocks ? answer->volume.memory : answer->volume.samples, answer->sample_bytes);
 }
 
 static bool work(const hewn_apart *job, int file)
@@ -117,8 +124,7 @@ static bool work(const hewn_apart *job, int file)
     }
     answer.result = job->read(job, &desc, &answer.volume, &answer.error);
     if (answer.result == HEWN_OK)
-        answer.sample_bytes =
-            hewn_volume_frame_size(&answer.volume) * answer.volume.frame_count * hewn_voxel_size(answer.volume.type);
+        answer.sample_bytes = bytes_of(&answer.volume);
     copy_text(answer.name, answer.volume.name);
     copy_text(answer.remark, answer.volume.remark);
     return send(job, file, &answer);
@@ -170,7 +176,8 @@ static hewn_result take_reply(const hewn_apart *job, int file, hewn_volume *out,
     out->memory = block;
     out->memory_length = (size_t)length;
     out->mapped = true;
-    out->samples = (const char *)block + SAMPLES_AT;
+    out->samples = out->blocks ? NULL : (const char *)block + SAMPLES_AT;
+    out->blocks = out->blocks ? (const void *)((const char *)block + SAMPLES_AT) : NULL;
     return HEWN_OK;
 }
 
