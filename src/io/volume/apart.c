@@ -2,10 +2,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/pidfd.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -132,8 +134,21 @@ static bool work(const hewn_apart *job, int file)
 
 /* --- in this one -------------------------------------------------------------------------------------------------- */
 
+/* Sleeps until the process ends, or it is time to report again. */
+static void wait_a_while(int handle, struct timespec *pause)
+{
+    enum { LONGEST = 20000000 }; /* ns */
+    struct pollfd ends = {.fd = handle, .events = POLLIN};
+    if (handle >= 0) {
+        (void)poll(&ends, 1, LONGEST / 1000000);
+        return;
+    }
+    nanosleep(pause, NULL); /* nobody tells when: look more and more seldom */
+    pause->tv_nsec = pause->tv_nsec < LONGEST ? 2 * pause->tv_nsec : pause->tv_nsec;
+}
+
 /* Waits for the other process; a callback that says no ends it. */
-static hewn_result wait_for(const hewn_apart *job, pid_t child, int *status, hewn_error *error)
+static hewn_result wait_for(const hewn_apart *job, pid_t child, int handle, int *status, hewn_error *error)
 {
     struct timespec pause = {0, 200000}; /* 0.2 ms at first, then longer */
     for (;;) {
@@ -148,8 +163,7 @@ static hewn_result wait_for(const hewn_apart *job, pid_t child, int *status, hew
             return HEWN_OK;
         if (ended < 0 && errno != EINTR)
             return hewn_fail_at(error, HEWN_IO, job->name, 0, "the process that reads it is lost");
-        nanosleep(&pause, NULL);
-        pause.tv_nsec = pause.tv_nsec < 20000000 ? 2 * pause.tv_nsec : pause.tv_nsec;
+        wait_a_while(handle, &pause);
     }
 }
 
@@ -189,7 +203,11 @@ static hewn_result run(const hewn_apart *job, int file, hewn_volume *out, hewn_e
         return hewn_fail_at(error, HEWN_IO, job->name, 0, "no process can be made to read it");
     if (child == 0)
         _exit(work(job, file) ? 0 : 1);
-    HEWN_TRY(wait_for(job, child, &status, error));
+    int handle = pidfd_open(child, 0);
+    hewn_result waited = wait_for(job, child, handle, &status, error);
+    if (handle >= 0)
+        close(handle);
+    HEWN_TRY(waited);
     if (!WIFEXITED(status))
         return hewn_fail_at(
             error, HEWN_BAD_INPUT, job->name, 0,
