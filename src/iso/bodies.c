@@ -70,11 +70,17 @@ static hewn_result find_shells(bodies *found, hewn_error *error)
 
 /* --- which lies in which ------------------------------------------------------------------------------------------ */
 
-/* A crossing of a row at a place along i, of a vertex; `before` is the shell of the one before it, and then this one's.
- * `inside`: the sample there is. */
-static void meet(bodies *found, uint32_t at, uint32_t vertex, bool inside, uint32_t *before)
+/* The shell of a crossing: by other methods that of its vertex, by nets that of its quad. */
+static uint32_t shell_of(const bodies *found, uint64_t crossing)
 {
-    uint32_t number = found->of[vertex];
+    return found->of[found->lattice->nets ? found->mesh->indices[6 * crossing] : crossing];
+}
+
+/* A crossing of a row at a place along i; `before` is the shell of the one before it, and then this one's. `inside`: the
+ * sample there is. */
+static void meet(bodies *found, uint32_t at, uint32_t crossing, bool inside, uint32_t *before)
+{
+    uint32_t number = shell_of(found, crossing);
     shell *here = &found->shells[number];
     if (at < here->leftmost) {
         here->leftmost = at;
@@ -294,11 +300,16 @@ static bool is_kept(const bodies *found, uint64_t vertex)
     return found->shells[found->of[vertex]].kept;
 }
 
+static bool is_crossing_kept(const bodies *found, uint64_t crossing)
+{
+    return found->shells[shell_of(found, crossing)].kept;
+}
+
 static uint64_t count_kept(const bodies *found, uint64_t begin, uint64_t end)
 {
     uint64_t count = 0;
     for (uint64_t v = begin; v < end; v++)
-        count += is_kept(found, v);
+        count += is_crossing_kept(found, v);
     return count;
 }
 
@@ -314,9 +325,9 @@ static uint64_t count_caps(const bodies *found)
         uint64_t end = n + 1 < rows ? row[1].vertices[0] : lattice->vertex_count;
         uint32_t last = lattice->dims[0] - 2;
         if (bits[0] >> 1 & 1)
-            count += is_kept(found, row->vertices[0]);
+            count += is_crossing_kept(found, row->vertices[0]);
         if (bits[last / 64] >> last % 64 & 1)
-            count += is_kept(found, row->vertices[1] - 1);
+            count += is_crossing_kept(found, row->vertices[1] - 1);
         if (hewn_lattice_in_rim(lattice, 1, j) || hewn_lattice_in_rim(lattice, 1, j + 1))
             count += count_kept(found, row->vertices[1], row->vertices[2]);
         if (hewn_lattice_in_rim(lattice, 2, k) || hewn_lattice_in_rim(lattice, 2, k + 1))
@@ -340,7 +351,7 @@ static uint64_t count_block_caps(const bodies *found)
             const uint64_t caps = hewn_block_rim_edges(lattice, block, axis, z);
             uint32_t vertex = hewn_block_row(lattice->blocks, block, y, z)->vertices[axis];
             for (uint64_t rest = crossed; rest; rest &= rest - 1, vertex++)
-                count += caps >> hewn_lattice_lowest(rest) & 1 && is_kept(found, vertex);
+                count += caps >> hewn_lattice_lowest(rest) & 1 && is_crossing_kept(found, vertex);
         }
     }
     return count;

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "iso/decide.h"
 #include "iso/lattice_blocks.h"
+#include "iso/lattice_nets.h"
 #include "iso/lattice_sample.h"
 
 /* --- decisions ---------------------------------------------------------------------------------------------------- */
@@ -16,19 +17,38 @@ static bool touches_rim(const hewn_lattice *lattice, uint32_t i, uint32_t j, uin
     return false;
 }
 
-double hewn_lattice_value_at(const hewn_lattice *lattice, const uint32_t at[3], bool inside)
+/* Where a sample is: NULL in the rim. */
+static const void *find_sample(const hewn_lattice *lattice, const uint32_t at[3], uint64_t *number)
 {
     const hewn_volume *volume = lattice->volume;
     for (int axis = 0; axis < 3; axis++)
         if (hewn_lattice_in_rim(lattice, axis, at[axis]))
-            return 0;
+            return NULL;
     const uint32_t ijk[3] = {at[0] - lattice->rim, at[1] - lattice->rim, at[2] - lattice->rim};
-    const void *samples = volume->samples;
-    uint64_t number;
     if (volume->blocks)
-        samples = hewn_blocks_sample(volume->blocks, ijk, &number);
-    else
-        number = lattice->first + ijk[0] + volume->dims[0] * (ijk[1] + (uint64_t)volume->dims[1] * ijk[2]);
+        return hewn_blocks_sample(volume->blocks, ijk, number);
+    *number = lattice->first + ijk[0] + volume->dims[0] * (ijk[1] + (uint64_t)volume->dims[1] * ijk[2]);
+    return volume->samples;
+}
+
+bool hewn_lattice_inside_at(const hewn_lattice *lattice, const uint32_t at[3])
+{
+    uint64_t number;
+    uint8_t inside = 0;
+    hewn_volume view = *lattice->volume;
+    view.samples = find_sample(lattice, at, &number);
+    if (view.samples)
+        hewn_threshold_apply(&lattice->threshold, &view, number, 1, &inside);
+    return inside;
+}
+
+double hewn_lattice_value_at(const hewn_lattice *lattice, const uint32_t at[3], bool inside)
+{
+    const hewn_volume *volume = lattice->volume;
+    uint64_t number;
+    const void *samples = find_sample(lattice, at, &number);
+    if (!samples)
+        return 0;
     const double raw = hewn_lattice_raw(samples, number, volume->type);
     return hewn_lattice_agree(lattice, hewn_lattice_field(lattice, raw, volume->type), inside);
 }
@@ -38,6 +58,8 @@ uint32_t hewn_lattice_patch(const hewn_lattice *lattice, uint32_t pattern, uint3
     uint32_t head = lattice->table[lattice->flipped ? pattern ^ 255u : pattern];
     if (!(head & HEWN_MC33_DECIDES))
         return head & 0xFFFF;
+    if (lattice->nets)
+        return hewn_nets_decide(lattice, head, (const uint32_t[3]){i, j, k});
     double values[8];
     for (uint32_t c = 0; c < 8; c++) {
         const uint32_t at[3] = {i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)};

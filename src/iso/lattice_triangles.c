@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "iso/lattice_blocks.h"
-#include "iso/lattice_cells.h"
+#include "iso/lattice_nets.h"
 #include "iso/patch.h"
 
 hewn_lattice_cell_row hewn_lattice_begin_cells(const hewn_lattice *lattice, hewn_triangles *out,
@@ -17,8 +17,12 @@ hewn_lattice_cell_row hewn_lattice_begin_cells(const hewn_lattice *lattice, hewn
             row.upright[i] = begins[i]->vertices[2];
     }
     const hewn_lattice_row *own = begins[0];
-    row.centre = (uint32_t)lattice->vertex_count + own->centres;
-    row.centre_place = lattice->reached - lattice->before.vertices + own->centres - lattice->before.centres;
+    row.centre = own->centres;
+    row.centre_place = own->centres - lattice->before.centres;
+    if (!lattice->nets) { /* vertices on edges come first */
+        row.centre += (uint32_t)lattice->vertex_count;
+        row.centre_place += lattice->reached - lattice->before.vertices;
+    }
     row.triangle = own->triangles - lattice->before.triangles;
     return row;
 }
@@ -87,6 +91,10 @@ void hewn_lattice_cut_cell(hewn_lattice_cell_row *row, uint32_t pattern, const u
 {
     uint32_t names[16] = {0};
     name_edges(row, pattern, names);
+    if (row->lattice->nets) {
+        hewn_nets_place(row, names, pattern, record, turn);
+        return;
+    }
     uint32_t triangles = record[0] & 255, centres = record[0] >> 8;
     for (uint32_t i = 0; i < centres; i++) {
         place_centre(row, names, record[1 + i / 2] >> 16 * (i % 2) & 0xFFFF);

@@ -258,7 +258,10 @@ hewn_result hewn_volume_extract_parts(const hewn_volume *volume, const hewn_volu
                                       const hewn_mesh_sink *sink, hewn_volume_extract_stats *stats, hewn_error *error)
 {
     stream of = {.sink = sink};
-    hewn_result result = hewn_volume_extraction_begin(volume, desc, &of.run, error);
+    hewn_result result =
+        desc->method == HEWN_METHOD_NETS
+            ? hewn_fail(error, HEWN_INVALID_ARGUMENT, "nets are made in one piece; mc33 and mc come in parts")
+            : hewn_volume_extraction_begin(volume, desc, &of.run, error);
     if (result == HEWN_OK)
         result = run_passes(&of, error);
     hewn_volume_extraction_clear(&of.run);
