@@ -1,5 +1,6 @@
 /* From level sets in .vdb files to meshes: Hewn beside OpenVDB's volumeToMesh, in turn and in one process, each with
- * its own reader. Both work on the tree; Hewn makes normals, OpenVDB makes none. usage: vdb [--runs N] [FILE ...]; without a file spheres of 128, 256 and 512 voxels. */
+ * its own reader. Both work on the tree; Hewn makes normals, OpenVDB makes none. usage: vdb [--runs N] [FILE ...];
+ * without a file spheres of 128, 256 and 512 voxels. */
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -85,11 +86,12 @@ static void compare(const char *path, const char *name, int runs)
     }
     for (int what = 0; what < TIMES; what++)
         of[what] = median(times[what], runs);
-    printf("%-16s %9llu triangles, read %.3f, mesh %.3f (%.3f without normals), processor %.3f | %9llu quads, read %.3f, "
-           "mesh %.3f, processor %.3f | mesh %.2f (%.2f), together %.2f, processor %.2f\n",
-           name, (unsigned long long)triangles, of[READ], of[MESH], of[BARE], of[ALL], (unsigned long long)quads,
-           of[THEIR_READ], of[THEIR_MESH], of[THEIR_ALL], of[MESH] / of[THEIR_MESH], of[BARE] / of[THEIR_MESH],
-           (of[READ] + of[MESH]) / (of[THEIR_READ] + of[THEIR_MESH]), of[ALL] / of[THEIR_ALL]);
+    printf(
+        "%-16s %9llu triangles, read %.3f, mesh %.3f (%.3f without normals), processor %.3f | %9llu quads, read %.3f, "
+        "mesh %.3f, processor %.3f | mesh %.2f (%.2f), together %.2f, processor %.2f\n",
+        name, (unsigned long long)triangles, of[READ], of[MESH], of[BARE], of[ALL], (unsigned long long)quads,
+        of[THEIR_READ], of[THEIR_MESH], of[THEIR_ALL], of[MESH] / of[THEIR_MESH], of[BARE] / of[THEIR_MESH],
+        (of[READ] + of[MESH]) / (of[THEIR_READ] + of[THEIR_MESH]), of[ALL] / of[THEIR_ALL]);
     fflush(stdout);
 }
 

@@ -62,8 +62,8 @@ typedef struct hewn_volume {
     hewn_voxel type;
     const void *samples;       /* NULL where `blocks` has them */
     const hewn_blocks *blocks; /* NULL: they are in `samples` */
-    double slope, intercept; /* finite; slope is not 0 */
-    double to_world[16];     /* row-major; finite, invertible, last row 0 0 0 1 */
+    double slope, intercept;   /* finite; slope is not 0 */
+    double to_world[16];       /* row-major; finite, invertible, last row 0 0 0 1 */
     bool anatomical;
     bool hounsfield;       /* the file says that values are Hounsfield units */
     bool level_set;        /* the file says that values are signed distances, negative inside */

@@ -61,8 +61,8 @@ static double bound_by(const reach_survey *survey, const reach_piece *piece, uin
 }
 
 /* Also by a corner's distance and how far the others are from it, or how far a point can be from all of them (a
- * triangle whose longest side is 1 has none that is more than 1 / sqrt(3) from every corner), which shrinks with the piece
- * whatever is there. */
+ * triangle whose longest side is 1 has none that is more than 1 / sqrt(3) from every corner), which shrinks with the
+ * piece whatever is there. */
 static double bound(const reach_survey *survey, const reach_piece *piece)
 {
     double least = INFINITY, furthest = 0, longest = 0;
@@ -294,8 +294,8 @@ static double furthest_point(const reach_survey *all, const reach_spot *const co
     return most;
 }
 
-static uint64_t mark_far(const reach_survey *all, const hewn_triangle_view *from, const reach_spot *spots, uint32_t inner,
-                         double limit, double near, uint8_t *far)
+static uint64_t mark_far(const reach_survey *all, const hewn_triangle_view *from, const reach_spot *spots,
+                         uint32_t inner, double limit, double near, uint8_t *far)
 {
     uint64_t count = 0;
 #pragma omp parallel for schedule(dynamic, 256) reduction(+ : count) if (from->triangle_count > FEW)

@@ -35,7 +35,8 @@ HEWN_LATTICE_INLINE void load_run(const hewn_lattice *lattice, const near_block 
                                   uint32_t end, double *out, hewn_voxel type)
 {
     const uint64_t first = from->constant ? from->first : from->first + (uint64_t)HEWN_BLOCK * row;
-    const double all = from->constant ? hewn_lattice_field(lattice, hewn_lattice_raw(from->samples, first, type), type) : 0;
+    const double all =
+        from->constant ? hewn_lattice_field(lattice, hewn_lattice_raw(from->samples, first, type), type) : 0;
     for (uint32_t i = begin; i < end; i++)
         out[i - begin] =
             from->constant ? all : hewn_lattice_field(lattice, hewn_lattice_raw(from->samples, first + i, type), type);
@@ -47,8 +48,8 @@ HEWN_LATTICE_INLINE void load_field(const hewn_lattice *lattice, const uint32_t 
 {
     near_block near[NEAR][NEAR][NEAR];
     for (uint32_t n = 0; n < NEAR * NEAR * NEAR; n++)
-        near[n / 9][n / 3 % 3][n % 3] = find_near(lattice->volume->blocks, place[0] + n % 3 - 1,
-                                                  place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1);
+        near[n / 9][n / 3 % 3][n % 3] =
+            find_near(lattice->volume->blocks, place[0] + n % 3 - 1, place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1);
     for (uint32_t k = lo; k < hi; k++)
         for (uint32_t j = 0; j < SIDE; j++) {
             const uint32_t y = j + HEWN_BLOCK - BEFORE, z = k + HEWN_BLOCK - BEFORE;
@@ -168,8 +169,8 @@ void hewn_lattice_blocks_emit_vertices(const hewn_lattice *lattice, hewn_triangl
 
 /* --- triangles ---------------------------------------------------------------------------------------------------- */
 
-/* The four rows of samples around a row of cells. Where a row goes on in another bar, its numbers are those of the first
- * block there that lies no less far along i. */
+/* The four rows of samples around a row of cells. Where a row goes on in another bar, its numbers are those of the
+ * first block there that lies no less far along i. */
 static void find_rows(const hewn_lattice *lattice, uint64_t number, uint32_t y, uint32_t z,
                       const hewn_lattice_row *out[4])
 {
@@ -204,8 +205,7 @@ static void cut_block(const hewn_lattice *lattice, uint64_t number, hewn_triangl
             for (; rest; rest &= rest - 1) {
                 const uint32_t x = hewn_lattice_lowest(rest);
                 const uint32_t pattern = hewn_block_pattern(&signs, z, x + HEWN_BLOCK * y);
-                const uint32_t place =
-                    hewn_lattice_patch(lattice, pattern, start[0] + x, start[1] + y, start[2] + z);
+                const uint32_t place = hewn_lattice_patch(lattice, pattern, start[0] + x, start[1] + y, start[2] + z);
                 hewn_lattice_cut_cell(&row, pattern, lattice->table + place, turn);
             }
         }

@@ -181,8 +181,8 @@ static void add_block(const block_search *search, const uint32_t place[3], block
                hewn_block_active(&signs, z);
     if (!any || out->failed)
         return;
-    out->failed = out->count > MOST_BLOCKS || hewn_reserve((void **)&out->keys, &out->room, out->count + 1,
-                                                           sizeof *out->keys, NULL) != HEWN_OK;
+    out->failed = out->count > MOST_BLOCKS ||
+                  hewn_reserve((void **)&out->keys, &out->room, out->count + 1, sizeof *out->keys, NULL) != HEWN_OK;
     if (!out->failed)
         out->keys[out->count++] = place[0] + search->along * place[1] + search->across * place[2];
 }

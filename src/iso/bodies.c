@@ -76,8 +76,8 @@ static uint32_t shell_of(const bodies *found, uint64_t crossing)
     return found->of[found->lattice->nets ? found->mesh->indices[6 * crossing] : crossing];
 }
 
-/* A crossing of a row at a place along i; `before` is the shell of the one before it, and then this one's. `inside`: the
- * sample there is. */
+/* A crossing of a row at a place along i; `before` is the shell of the one before it, and then this one's. `inside`:
+ * the sample there is. */
 static void meet(bodies *found, uint32_t at, uint32_t crossing, bool inside, uint32_t *before)
 {
     uint32_t number = shell_of(found, crossing);

@@ -32,7 +32,8 @@ typedef struct hewn_lattice_row {
 
 typedef struct hewn_lattice {
     const hewn_volume *volume;
-    struct hewn_lattice_blocks *blocks; /* where samples are in blocks: signs and rows are there (iso/lattice_blocks.h) */
+    struct hewn_lattice_blocks
+        *blocks;      /* where samples are in blocks: signs and rows are there (iso/lattice_blocks.h) */
     uint64_t first;   /* sample (0, 0, 0) of the frame */
     uint32_t rim;     /* 1 where it is closed, else 0 */
     uint32_t dims[3]; /* with the rim */
@@ -55,8 +56,9 @@ typedef struct hewn_lattice {
     bool normals;
     bool nets;                       /* the table is that of surface nets (iso/lattice_nets.h), */
     const hewn_triangles *crossings; /* and these are what vertices on edges are otherwise */
-    hewn_lattice_sums *slices; /* or NULL: where counting puts what is before each slice of the slab, and after the last */
-    hewn_lattice_sums before;  /* the slab */
+    hewn_lattice_sums
+        *slices; /* or NULL: where counting puts what is before each slice of the slab, and after the last */
+    hewn_lattice_sums before; /* the slab */
     hewn_lattice_sums after;  /* and after it, with what is in it */
     uint64_t reached;         /* vertices on edges with those of the slice after it */
     uint64_t vertex_count;    /* of the whole, on edges */

@@ -14,8 +14,8 @@
 /* Rows of samples (or cells) of a block: number j + 8 k. */
 enum { HEWN_BLOCK_ROWS = HEWN_BLOCK * HEWN_BLOCK };
 
-/* A block of the surface. `ahead`: the first one that lies no less far along i in the bars at (j + 1, k), (j, k + 1) and
- * (j + 1, k + 1). If it is not in that bar at all, there is nothing to be named in it. */
+/* A block of the surface. `ahead`: the first one that lies no less far along i in the bars at (j + 1, k), (j, k + 1)
+ * and (j + 1, k + 1). If it is not in that bar at all, there is nothing to be named in it. */
 typedef struct hewn_lattice_block {
     uint32_t place[3];
     uint32_t ahead[3];
@@ -24,8 +24,8 @@ typedef struct hewn_lattice_block {
 typedef uint64_t hewn_block_bits[HEWN_BLOCK]; /* of slices: bit i + 8 j */
 
 typedef struct hewn_lattice_blocks {
-    hewn_block_bits *inside;     /* of the volume's blocks; not inside what is not in the volume */
-    uint8_t *constants;          /* whether each constant is inside */
+    hewn_block_bits *inside; /* of the volume's blocks; not inside what is not in the volume */
+    uint8_t *constants;      /* whether each constant is inside */
     hewn_lattice_block *surface;
     uint64_t count;
     /* The slab's are these. */
@@ -92,7 +92,8 @@ static inline void hewn_block_slices(const hewn_lattice *lattice, const hewn_lat
     out[1] = hi < HEWN_BLOCK ? (uint32_t)(hi > 0 ? hi : 0) : HEWN_BLOCK;
 }
 
-static inline hewn_lattice_row *hewn_block_row(const hewn_lattice_blocks *blocks, uint64_t block, uint32_t y, uint32_t z)
+static inline hewn_lattice_row *hewn_block_row(const hewn_lattice_blocks *blocks, uint64_t block, uint32_t y,
+                                               uint32_t z)
 {
     return &blocks->rows[block - blocks->first][y + HEWN_BLOCK * z];
 }

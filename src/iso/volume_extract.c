@@ -120,8 +120,9 @@ static hewn_result check(const hewn_volume *volume, const hewn_volume_extract_de
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc or nets, not by %s",
                          hewn_method_name(method) ? hewn_method_name(method) : "another method");
     if (method == HEWN_METHOD_NETS && desc->open)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "nets close the surface at the border: their faces lie across it; mc33 and mc can leave it open");
+        return hewn_fail(
+            error, HEWN_INVALID_ARGUMENT,
+            "nets close the surface at the border: their faces lie across it; mc33 and mc can leave it open");
     return HEWN_OK;
 }
 

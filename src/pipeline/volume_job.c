@@ -58,7 +58,8 @@ static hewn_result check_method(const hewn_volume_job_desc *desc, hewn_error *er
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
                          "nets close the surface at the border; mc33 and mc can leave it open");
     if (desc->method == HEWN_METHOD_NETS && desc->max_memory > 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "nets are made in one piece; mc33 and mc keep to a limit of memory");
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "nets are made in one piece; mc33 and mc keep to a limit of memory");
     return HEWN_OK;
 }
 

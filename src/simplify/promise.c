@@ -11,11 +11,11 @@
 /* The largest error by quadrics, a mean distance, is at first this share of what is allowed. Where a run came out too
  * far away, it becomes half of what it was; below the least share vertices stay as they are. Each run takes other ways
  * everywhere, so after some runs what nearly offends counts, too: a distance of this share of what is allowed. */
-static const double first = 0.5, least = 0.01, nearly = 0.85;
+static const double first = 0.5, least = 0.01, nearly = 0.95;
 enum { SOME_RUNS = 2 };
 
 /* Rows of points within the result's triangles that are looked at before anything is proven. */
-enum { INNER = 3 };
+enum { INNER = 7 };
 
 /* Intersections that are listed in one go. */
 enum { MOST_PAIRS = 1 << 16 };

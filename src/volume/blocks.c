@@ -56,9 +56,9 @@ static hewn_result find_entry(hewn_blocks_plan *plan, const uint32_t at[3], uint
                               hewn_error *error)
 {
     hewn_blocks *head = &plan->head;
-    uint64_t root = at[0] / HEWN_UPPER_SPAN +
-                    (uint64_t)head->roots[0] * (at[1] / HEWN_UPPER_SPAN +
-                                                (uint64_t)head->roots[1] * (at[2] / HEWN_UPPER_SPAN));
+    uint64_t root =
+        at[0] / HEWN_UPPER_SPAN +
+        (uint64_t)head->roots[0] * (at[1] / HEWN_UPPER_SPAN + (uint64_t)head->roots[1] * (at[2] / HEWN_UPPER_SPAN));
     *out = &plan->root[root];
     if (side == HEWN_UPPER_SPAN)
         return HEWN_OK;
@@ -134,9 +134,8 @@ hewn_result hewn_blocks_add_block(hewn_blocks_plan *plan, const int32_t origin[3
     if (!*added)
         return HEWN_OK;
     HEWN_TRY(find_entry(plan, at, HEWN_BLOCK, &entry, error));
-    if (*count >= UINT32_MAX / 2 ||
-        hewn_reserve((void **)&plan->places, &plan->place_room, (size_t)*count + 1, 3 * sizeof *plan->places, NULL) !=
-            HEWN_OK)
+    if (*count >= UINT32_MAX / 2 || hewn_reserve((void **)&plan->places, &plan->place_room, (size_t)*count + 1,
+                                                 3 * sizeof *plan->places, NULL) != HEWN_OK)
         return no_memory(error);
     for (int axis = 0; axis < 3; axis++)
         plan->places[3 * *count + (uint64_t)axis] = at[axis] / HEWN_BLOCK;

@@ -52,7 +52,8 @@ static inline uint32_t hewn_blocks_root(const hewn_blocks *blocks, uint32_t x, u
 {
     if (x >= blocks->roots[0] || y >= blocks->roots[1] || z >= blocks->roots[2])
         return 0;
-    return HEWN_BLOCKS_ARRAY(blocks, uint32_t, root)[x + (uint64_t)blocks->roots[0] * (y + (uint64_t)blocks->roots[1] * z)];
+    return HEWN_BLOCKS_ARRAY(blocks, uint32_t,
+                             root)[x + (uint64_t)blocks->roots[0] * (y + (uint64_t)blocks->roots[1] * z)];
 }
 
 /* The entry of a cube of 128, by its place in such cubes: of a constant, or of a table of blocks. */
@@ -84,7 +85,8 @@ static inline const void *hewn_blocks_sample(const hewn_blocks *blocks, const ui
     *number = entry >> 1;
     if (!hewn_entry_leads_on(entry))
         return HEWN_BLOCKS_ARRAY(blocks, char, constants);
-    *number = *number * HEWN_BLOCK_SAMPLES + x % HEWN_BLOCK + HEWN_BLOCK * (y % HEWN_BLOCK + HEWN_BLOCK * (z % HEWN_BLOCK));
+    *number =
+        *number * HEWN_BLOCK_SAMPLES + x % HEWN_BLOCK + HEWN_BLOCK * (y % HEWN_BLOCK + HEWN_BLOCK * (z % HEWN_BLOCK));
     return HEWN_BLOCKS_ARRAY(blocks, char, samples);
 }
 

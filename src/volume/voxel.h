@@ -62,8 +62,8 @@ static inline uint64_t hewn_volume_stretches(const hewn_volume *volume)
 /* As hewn_volume_forget(), for samples `at` to `at + count - 1` of all. */
 void hewn_volume_forget_samples(const hewn_volume *volume, uint64_t at, uint64_t count);
 
-/* Stretch `index` of a frame as doubles; how many it has, each of which is `*weight` samples. What lies well before it in a file is let go, so that
- * whoever goes through a frame in order takes little memory. */
+/* Stretch `index` of a frame as doubles; how many it has, each of which is `*weight` samples. What lies well before it
+ * in a file is let go, so that whoever goes through a frame in order takes little memory. */
 size_t hewn_volume_stretch(const hewn_volume *volume, uint64_t frame, uint64_t index, double out[HEWN_VOXEL_STRETCH],
                            uint64_t *weight);
 

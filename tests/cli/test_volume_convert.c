@@ -231,19 +231,14 @@ static void write_tiff(const char *path)
 static void put_element(FILE *file, unsigned group, unsigned element, const char *vr, const void *value, size_t length)
 {
     const unsigned size = (unsigned)(length + (length & 1));
-    const unsigned char head[8] = {(unsigned char)group,
-                                   (unsigned char)(group >> 8),
-                                   (unsigned char)element,
-                                   (unsigned char)(element >> 8),
-                                   (unsigned char)vr[0],
-                                   (unsigned char)vr[1],
-                                   (unsigned char)size,
-                                   (unsigned char)(size >> 8)};
+    const unsigned char head[8] = {(unsigned char)group,          (unsigned char)(group >> 8), (unsigned char)element,
+                                   (unsigned char)(element >> 8), (unsigned char)vr[0],        (unsigned char)vr[1],
+                                   (unsigned char)size,           (unsigned char)(size >> 8)};
     const bool is_long = strcmp(vr, "OW") == 0;
     assert_int_equal(fwrite(head, 1, is_long ? 6 : 8, file), is_long ? 6 : 8);
     if (is_long) {
-        const unsigned char longer[6] = {0, 0, (unsigned char)size, (unsigned char)(size >> 8),
-                                         (unsigned char)(size >> 16), 0};
+        const unsigned char longer[6] = {
+            0, 0, (unsigned char)size, (unsigned char)(size >> 8), (unsigned char)(size >> 16), 0};
         assert_int_equal(fwrite(longer, 1, 6, file), 6);
     }
     assert_int_equal(fwrite(value, 1, length, file), length);
@@ -410,7 +405,9 @@ static void convert_and_check(const char *folder, const char *input, const char 
     for (int row = 0; row < 3; row++)
         for (int k = 0; k < 3; k++)
             columns[k][row] = affine[row][k];
-    if (determinant(columns[0], columns[1], columns[2]) < 0)
+    bool slices =
+        strcmp(input, "slices") == 0; /* are put in order along their normal, which makes the lattice right-handed */
+    if (!slices && determinant(columns[0], columns[1], columns[2]) < 0)
         assert_has(result.err, "left-handed");
     run_result_destroy(&result);
     char *text = run_read_file(run_path(folder, "out.obj"), &length);
@@ -737,10 +734,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_place_of_an_oblique_volume),
-        cmocka_unit_test(test_place_of_a_straight_volume), cmocka_unit_test(test_copies_of_a_head_agree),
-        cmocka_unit_test(test_files_say_where_they_are),   cmocka_unit_test(test_report),
-        cmocka_unit_test(test_odd_values_are_explained),   cmocka_unit_test(test_bad_requests),
-        cmocka_unit_test(test_same_bytes_for_any_threads), cmocka_unit_test(test_data_converts),
+        cmocka_unit_test(test_place_of_a_straight_volume),
+        cmocka_unit_test(test_copies_of_a_head_agree),
+        cmocka_unit_test(test_files_say_where_they_are),
+        cmocka_unit_test(test_report),
+        cmocka_unit_test(test_odd_values_are_explained),
+        cmocka_unit_test(test_bad_requests),
+        cmocka_unit_test(test_same_bytes_for_any_threads),
+        cmocka_unit_test(test_data_converts),
     };
     return cmocka_run_group_tests_name("volume_convert", tests, NULL, NULL);
 }

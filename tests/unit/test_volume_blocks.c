@@ -1,6 +1,6 @@
 /* Volumes in blocks are what they would be if all their samples lay in a row: the same samples, the same range and
- * percentiles, and the same mesh byte for byte, at once or in slabs; for random trees of blocks and constants with steps
- * between them. */
+ * percentiles, and the same mesh byte for byte, at once or in slabs; for random trees of blocks and constants with
+ * steps between them. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -86,7 +86,8 @@ static int32_t floor_to(int32_t value, int32_t side)
 static void choose_cube(twins *of, int32_t side, int32_t origin[3])
 {
     for (int axis = 0; axis < 3; axis++)
-        origin[axis] = floor_to(of->origin[axis] + (int32_t)random_below(&of->random, of->dense.dims[axis] + 16) - 8, side);
+        origin[axis] =
+            floor_to(of->origin[axis] + (int32_t)random_below(&of->random, of->dense.dims[axis] + 16) - 8, side);
 }
 
 static void add_constants(twins *of, int32_t side, uint32_t count)
@@ -174,7 +175,8 @@ static void clear(twins *of)
     free(of->blocks.memory);
 }
 
-static const uint32_t shapes[][3] = {{9, 10, 11}, {1, 7, 30}, {40, 9, 21}, {18, 33, 5}, {150, 12, 10}, {8, 8, 8}, {17, 141, 6}};
+static const uint32_t shapes[][3] = {{9, 10, 11},   {1, 7, 30}, {40, 9, 21}, {18, 33, 5},
+                                     {150, 12, 10}, {8, 8, 8},  {17, 141, 6}};
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
 /* --- samples and what is found in them ---------------------------------------------------------------------------- */
@@ -209,7 +211,8 @@ static void test_same_samples(void **state)
         }
         hewn_volume_histogram one, other;
         if (a.sample_lo < a.sample_hi) {
-            assert_int_equal(hewn_volume_find_histogram(&of.blocks, 0, a.sample_lo, a.sample_hi, 9, &one, NULL), HEWN_OK);
+            assert_int_equal(hewn_volume_find_histogram(&of.blocks, 0, a.sample_lo, a.sample_hi, 9, &one, NULL),
+                             HEWN_OK);
             assert_int_equal(hewn_volume_find_histogram(&of.dense, 0, a.sample_lo, a.sample_hi, 9, &other, NULL),
                              HEWN_OK);
             assert_memory_equal(one.bins, other.bins, 9 * sizeof *one.bins);

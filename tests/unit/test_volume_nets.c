@@ -213,7 +213,8 @@ static float ball[SIDE * SIDE * SIDE];
 /* Distances, inside below 0: a ball with a hollow, and a smaller one beside it. */
 static hewn_volume make_balls(bool hollow)
 {
-    hewn_volume out = {.dims = {SIDE, SIDE, SIDE}, .frame_count = 1, .type = HEWN_VOXEL_FLOAT, .samples = ball, .slope = 1};
+    hewn_volume out = {
+        .dims = {SIDE, SIDE, SIDE}, .frame_count = 1, .type = HEWN_VOXEL_FLOAT, .samples = ball, .slope = 1};
     for (int i = 0; i < 16; i++)
         out.to_world[i] = i % 5 == 0;
     for (int n = 0; n < SIDE * SIDE * SIDE; n++) {
@@ -286,8 +287,11 @@ static void test_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_volumes), cmocka_unit_test(test_far_away),
-        cmocka_unit_test(test_same_bytes_for_any_threads), cmocka_unit_test(test_ball), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_random_volumes),
+        cmocka_unit_test(test_far_away),
+        cmocka_unit_test(test_same_bytes_for_any_threads),
+        cmocka_unit_test(test_ball),
+        cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

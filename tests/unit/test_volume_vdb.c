@@ -1,5 +1,5 @@
-/* Grids of .vdb files that are left in blocks give the samples and the meshes that they give when they are made dense, and
- * take memory for what is active only. */
+/* Grids of .vdb files that are left in blocks give the samples and the meshes that they give when they are made dense,
+ * and take memory for what is active only. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>

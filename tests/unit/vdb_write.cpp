@@ -89,7 +89,8 @@ openvdb::GridBase::Ptr make_tree(uint64_t seed)
     for (int n = 0; n < int(seed % 5); n++)
         tree.addTile(2, openvdb::Coord(place(-2, 2) * 128, place(-2, 2) * 128, place(-1, 1) * 128), value(), false);
     for (int n = 0; n < 40; n++)
-        tree.addTile(1, openvdb::Coord(place(-6, 6) * 8, place(-4, 4) * 8, place(-3, 3) * 8), value(), random() % 2 == 0);
+        tree.addTile(1, openvdb::Coord(place(-6, 6) * 8, place(-4, 4) * 8, place(-3, 3) * 8), value(),
+                     random() % 2 == 0);
     for (int leaf = 0; leaf < 12; leaf++) {
         const openvdb::Coord origin(place(-6, 6) * 8, place(-4, 4) * 8, place(-3, 3) * 8);
         for (int n = 0; n < 512; n++)

@@ -358,5 +358,5 @@ try {
 
 /* io/shim/module.h looks for this name. */
 extern "C" __attribute__((visibility("default"))) const hewn_vdb_module hewn_module_table;
-const hewn_vdb_module hewn_module_table = {open_grid, close_grid, copy_box,   copy_leaf,
-                                            copy_tile, copy_background, write_level_set};
+const hewn_vdb_module hewn_module_table = {open_grid, close_grid,      copy_box,       copy_leaf,
+                                           copy_tile, copy_background, write_level_set};

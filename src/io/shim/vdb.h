@@ -68,8 +68,8 @@ typedef struct hewn_vdb_module {
      * (unless NULL) its samples in the grid's type (a bool is a byte of 0 or 1), i fastest, active or not. */
     void (*leaf)(const hewn_vdb *grid, uint64_t index, int32_t origin[3], void *samples);
 
-    /* Tile `index` of `tile_count`, larger ones first: a cube of 8, 128 or 4096 samples along its side that all have one
-     * value, of the grid's type, which is not the background's. What is in no leaf and no tile is background. */
+    /* Tile `index` of `tile_count`, larger ones first: a cube of 8, 128 or 4096 samples along its side that all have
+     * one value, of the grid's type, which is not the background's. What is in no leaf and no tile is background. */
     void (*tile)(const hewn_vdb *grid, uint64_t index, int32_t origin[3], uint32_t *side, void *sample);
 
     /* The background as a sample. */

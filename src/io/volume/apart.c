@@ -99,10 +99,12 @@ static bool send(const hewn_apart *job, int file, const reply *answer)
     char page[SAMPLES_AT] = {0};
     memcpy(page, answer, sizeof *answer);
     if (job->source && answer->result == HEWN_OK && answer->volume.mapped &&
-        (answer->volume.blocks || answer->volume.samples == answer->volume.memory) && answer->volume.memory_length == answer->sample_bytes)
+        (answer->volume.blocks || answer->volume.samples == answer->volume.memory) &&
+        answer->volume.memory_length == answer->sample_bytes)
         return pwrite(file, page, sizeof page, 0) == (ssize_t)sizeof page;
     return ftruncate(file, 0) == 0 && write_all(file, page, sizeof page) &&
-           write_all(file, answer->volume.blocks ? answer->volume.memory : answer->volume.samples, answer->sample_bytes);
+           write_all(file, answer->volume.blocks ? answer->volume.memory : answer->volume.samples,
+                     answer->sample_bytes);
 }
 
 static bool work(const hewn_apart *job, int file)

@@ -91,8 +91,7 @@ static void fill_blocks(const hewn_vdb_module *module, const hewn_vdb *grid, con
 }
 
 static hewn_result make_blocks(const hewn_volume_source *source, const hewn_vdb_module *module, const hewn_vdb *grid,
-                               const hewn_vdb_facts *facts, const int32_t lo[3], hewn_volume *volume,
-                               hewn_error *error)
+                               const hewn_vdb_facts *facts, const int32_t lo[3], hewn_volume *volume, hewn_error *error)
 {
     hewn_blocks_plan plan;
     uint64_t background;
