@@ -32,12 +32,19 @@ HEWN_API const char *hewn_voxel_name(hewn_voxel type); /* "int8" to "uint64", "h
 HEWN_API bool hewn_voxel_find(const char *name, hewn_voxel *out);
 HEWN_API bool hewn_voxel_is_integer(hewn_voxel type);
 
+/* Samples of a volume that is mostly constant, in blocks: src/volume/blocks.h. */
+typedef struct hewn_blocks hewn_blocks;
+
 /* A volume. Zero is the empty one; what it owns it frees in hewn_volume_destroy(). Move it by assignment.
  *
  * Samples: i runs fastest, then j, then k, then the frame: sample (i, j, k) of frame t is number
  * i + dims[0] (j + dims[1] (k + dims[2] t)). They are in this machine's byte order and aligned to their size. They may
  * lie in the file itself, mapped into memory: then they are read from disk when they are first looked at, cost no heap,
  * and the file must not be cut short while the volume lives.
+ *
+ * Blocks: a reader that was allowed to (hewn/volume_io.h) leaves a volume that is mostly constant in blocks, as its
+ * file has it; it then takes memory for what is not constant only. There is one frame. Functions that take a volume say
+ * so where they cannot use blocks; samples are for hewn_volume_sample() to find then, and hewn_volume_frame() is NULL.
  *
  * Values: what a sample stands for (Hounsfield units, a distance) is slope × sample + intercept. A reader leaves them
  * apart, so that integers stay integers. An iso value is a value: compare samples with (value - intercept) / slope, and
@@ -53,9 +60,10 @@ typedef struct hewn_volume {
     uint32_t dims[3];     /* each at least 1 */
     uint64_t frame_count; /* at least 1: time steps, or components of vectors */
     hewn_voxel type;
-    const void *samples;
-    double slope, intercept; /* finite; slope is not 0 */
-    double to_world[16];     /* row-major; finite, invertible, last row 0 0 0 1 */
+    const void *samples;       /* NULL where `blocks` has them */
+    const hewn_blocks *blocks; /* NULL: they are in `samples` */
+    double slope, intercept;   /* finite; slope is not 0 */
+    double to_world[16];       /* row-major; finite, invertible, last row 0 0 0 1 */
     bool anatomical;
     bool hounsfield;       /* the file says that values are Hounsfield units */
     bool level_set;        /* the file says that values are signed distances, negative inside */
@@ -74,7 +82,7 @@ HEWN_API void hewn_volume_destroy(hewn_volume *volume);
  * can address. */
 HEWN_API hewn_result hewn_volume_check(const hewn_volume *volume, hewn_error *error);
 
-/* Samples of one frame, and where a frame begins. `frame` must be there. */
+/* Samples of one frame, and where a frame begins (NULL for samples in blocks). `frame` must be there. */
 HEWN_API uint64_t hewn_volume_frame_size(const hewn_volume *volume);
 HEWN_API const void *hewn_volume_frame(const hewn_volume *volume, uint64_t frame);
 

@@ -21,7 +21,7 @@ typedef enum hewn_inside {
 typedef struct hewn_volume_extract_desc {
     uint64_t frame;
     double iso;         /* a value, not a sample: see hewn_volume */
-    hewn_method method; /* HEWN_METHOD_MC33 where it is the default; or HEWN_METHOD_MARCHING_CUBES */
+    hewn_method method; /* HEWN_METHOD_MC33 where it is the default; or HEWN_METHOD_MARCHING_CUBES, HEWN_METHOD_NETS */
     hewn_inside inside;
     bool open;           /* leave the surface open at the outermost samples, instead of closing it there with a cap */
     bool no_normals;     /* leave them out */
@@ -54,12 +54,17 @@ typedef struct hewn_volume_extract_stats {
  * from its ends (more where floats are coarser), and by HEWN_METHOD_MC33 the mesh is connected as the interpolant's
  * surface is, by exact decisions (docs/extraction.md). Normals are the gradients of the samples by central differences.
  *
+ * By HEWN_METHOD_NETS vertices lie in cells instead, each at the mean of the crossings of a loop of the surface around
+ * the cell, and normals are the means of theirs; there is a quad around each crossed edge, cut along its shorter
+ * diagonal. Not with `open`, nor in parts.
+ *
  * The mesh is a closed, oriented 2-manifold for any samples, in which no vertex is used by more than one sheet. A
  * surface that reaches the outermost samples is closed there by a cap, 2^-14 of an edge beyond them, or with `open` has
  * a manifold border there. Positions are in the space of `place`, faces turned over where that mirrors. The same bytes
  * for any number of threads.
  *
- * Memory beside the mesh: a bit a sample and 24 bytes a row of samples; with `keep`, 4 bytes a vertex.
+ * Memory beside the mesh: a bit a sample and 24 bytes a row of samples; with `keep`, 4 bytes a vertex; of nets, 24
+ * bytes a crossing. Of a volume in blocks a bit a sample of these, and 1.5 kB for each block that the surface passes.
  *
  * HEWN_INVALID_ARGUMENT for a frame that is not there, an iso value or least volume that is not finite, another method,
  * a place that is singular or not finite, or `keep` with `open`; HEWN_BAD_INPUT where there is no surface

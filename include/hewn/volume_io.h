@@ -17,7 +17,7 @@ typedef enum hewn_volume_format {
     HEWN_VOLUME_NPY,       /* NumPy's arrays */
     HEWN_VOLUME_INR,       /* INRIMAGE-4 */
     HEWN_VOLUME_TIFF,      /* a page a slice */
-    HEWN_VOLUME_VDB,       /* OpenVDB's grids of scalars, made dense */
+    HEWN_VOLUME_VDB,       /* OpenVDB's grids of scalars */
     HEWN_VOLUME_DICOM      /* a folder of slices, or one file */
 } hewn_volume_format;
 
@@ -48,6 +48,7 @@ typedef struct hewn_volume_read_desc {
     hewn_raw_desc raw;             /* for HEWN_VOLUME_RAW */
     const char *grid;              /* of a .vdb, by name; NULL: its first grid of scalars */
     const char *series;            /* of a DICOM folder, by its UID; NULL: the only one */
+    bool blocks;                   /* a .vdb's samples may stay in blocks (hewn_volume.blocks); else it is made dense */
     uint64_t memory_limit;         /* bytes of heap for samples, and for a compressed file; 0 is 16 GiB */
     const hewn_progress *progress; /* or NULL; the stage is "load" */
 } hewn_volume_read_desc;

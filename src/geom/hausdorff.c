@@ -60,22 +60,27 @@ static double bound_by(const reach_survey *survey, const reach_piece *piece, uin
     return most;
 }
 
-/* Also by a corner's distance and how far the others are from it, which shrinks with the piece whatever is there. */
+/* Also by a corner's distance and how far the others are from it, or how far a point can be from all of them (a
+ * triangle whose longest side is 1 has none that is more than 1 / sqrt(3) from every corner), which shrinks with the
+ * piece whatever is there. */
 static double bound(const reach_survey *survey, const reach_piece *piece)
 {
-    double least = INFINITY;
+    double least = INFINITY, furthest = 0, longest = 0;
     for (int k = 0; k < 3; k++) {
         const reach_spot *corner = &piece->corner[k], *one = &piece->corner[(k + 1) % 3],
                          *two = &piece->corner[(k + 2) % 3];
         double first = gap(corner->at, one->at), second = gap(corner->at, two->at);
         double wide = corner->distance + (first > second ? first : second);
         least = wide < least ? wide : least;
+        furthest = corner->distance > furthest ? corner->distance : furthest;
+        longest = first > longest ? first : longest;
         if (k > 0 && corner->nearest == piece->corner[0].nearest)
             continue;
         double narrow = bound_by(survey, piece, corner->nearest);
         least = narrow < least ? narrow : least;
     }
-    return least;
+    const double near = furthest + 0.57735026918963 * longest; /* rounded up */
+    return near < least ? near : least;
 }
 
 /* --- cutting ------------------------------------------------------------------------------------------------------ */
@@ -260,6 +265,68 @@ hewn_result hewn_surface_reach(const hewn_triangle_view *from, const hewn_triang
             all.accept = desc->limit - 2 * slack;
         all.accept = all.accept > 0 ? all.accept : 0;
         prove_all(&all, from, spots, desc, slack, out);
+    }
+    hewn_free(spots);
+    hewn_free(used);
+    return result;
+}
+
+/* --- a glance ----------------------------------------------------------------------------------------------------- */
+
+/* The greatest distance of the points of a triangle that are in a grid, without its corners. */
+static double furthest_point(const reach_survey *all, const reach_spot *const corner[3], uint32_t inner)
+{
+    const uint32_t parts = inner + 1;
+    uint32_t guess = corner[0]->nearest;
+    double most = 0;
+    for (uint32_t a = 0; a < parts; a++)
+        for (uint32_t b = 0; a + b <= parts; b++) {
+            const uint32_t c = parts - a - b;
+            if (b == parts || c == parts)
+                continue;
+            double at[3];
+            for (int axis = 0; axis < 3; axis++)
+                at[axis] = (a * corner[0]->at[axis] + b * corner[1]->at[axis] + c * corner[2]->at[axis]) / parts;
+            const reach_spot spot = look(all, at, guess);
+            guess = spot.nearest;
+            most = spot.distance > most ? spot.distance : most;
+        }
+    return most;
+}
+
+static uint64_t mark_far(const reach_survey *all, const hewn_triangle_view *from, const reach_spot *spots,
+                         uint32_t inner, double limit, double near, uint8_t *far)
+{
+    uint64_t count = 0;
+#pragma omp parallel for schedule(dynamic, 256) reduction(+ : count) if (from->triangle_count > FEW)
+    for (uint64_t t = 0; t < from->triangle_count; t++) {
+        const reach_spot *corner[3];
+        double most = 0;
+        for (uint64_t k = 0; k < 3; k++) {
+            corner[k] = &spots[from->corners[3 * t + k]];
+            most = corner[k]->distance > most ? corner[k]->distance : most;
+        }
+        const double within = inner > 0 && most <= limit ? furthest_point(all, corner, inner) : 0;
+        most = within > most ? within : most;
+        far[t] = most > near * limit;
+        count += most > limit;
+    }
+    return count;
+}
+
+hewn_result hewn_surface_glance(const hewn_triangle_view *from, const hewn_triangle_view *to, const hewn_bvh *bvh,
+                                uint32_t inner, double limit, double near, uint8_t *far, uint64_t *count,
+                                hewn_error *error)
+{
+    const reach_survey all = {.to = to, .bvh = bvh};
+    reach_spot *spots = hewn_alloc(from->vertex_count, sizeof *spots);
+    uint8_t *used = hewn_alloc_zero(from->vertex_count, 1);
+    hewn_result result =
+        spots && used ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory measuring a distance");
+    *count = 0;
+    if (result == HEWN_OK) {
+        (void)look_at_vertices(&all, from, spots, used);
+        *count = mark_far(&all, from, spots, inner, limit, near, far);
     }
     hewn_free(spots);
     hewn_free(used);

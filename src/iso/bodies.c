@@ -10,6 +10,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "iso/lattice_blocks.h"
 
 #define NONE 0xFFFFFFFFu
 
@@ -69,6 +70,26 @@ static hewn_result find_shells(bodies *found, hewn_error *error)
 
 /* --- which lies in which ------------------------------------------------------------------------------------------ */
 
+/* The shell of a crossing: by other methods that of its vertex, by nets that of its quad. */
+static uint32_t shell_of(const bodies *found, uint64_t crossing)
+{
+    return found->of[found->lattice->nets ? found->mesh->indices[6 * crossing] : crossing];
+}
+
+/* A crossing of a row at a place along i; `before` is the shell of the one before it, and then this one's. `inside`:
+ * the sample there is. */
+static void meet(bodies *found, uint32_t at, uint32_t crossing, bool inside, uint32_t *before)
+{
+    uint32_t number = shell_of(found, crossing);
+    shell *here = &found->shells[number];
+    if (at < here->leftmost) {
+        here->leftmost = at;
+        here->before = *before;
+        here->cavity = inside;
+    }
+    *before = number;
+}
+
 static void walk_row(bodies *found, uint32_t j, uint32_t k)
 {
     const hewn_lattice *lattice = found->lattice;
@@ -77,15 +98,50 @@ static void walk_row(bodies *found, uint32_t j, uint32_t k)
     for (uint32_t word = 0; word < lattice->words; word++) {
         uint64_t rest = bits[word] ^ hewn_lattice_next(bits, word);
         for (rest &= hewn_lattice_mask(word, lattice->dims[0] - 1); rest; rest &= rest - 1) {
-            uint32_t bit = hewn_lattice_lowest(rest), number = found->of[vertex++];
-            shell *here = &found->shells[number];
-            if (64 * word + bit < here->leftmost) {
-                here->leftmost = 64 * word + bit;
-                here->before = before;
-                here->cavity = bits[word] >> bit & 1;
-            }
-            before = number;
+            uint32_t bit = hewn_lattice_lowest(rest);
+            meet(found, 64 * word + bit, vertex++, bits[word] >> bit & 1, &before);
         }
+    }
+}
+
+/* Where samples are in blocks: the rows of slice z of the blocks of a bar. */
+static void walk_bar(bodies *found, uint64_t first, uint64_t end, uint32_t z)
+{
+    const hewn_lattice *lattice = found->lattice;
+    const hewn_lattice_blocks *blocks = lattice->blocks;
+    uint32_t before[HEWN_BLOCK];
+    for (uint32_t y = 0; y < HEWN_BLOCK; y++)
+        before[y] = NONE;
+    for (uint64_t block = first; block < end; block++) {
+        hewn_block_signs signs;
+        uint32_t start[3];
+        hewn_block_signs_load(lattice, blocks->surface[block].place, &signs);
+        hewn_block_start(lattice, blocks->surface[block].place, start);
+        uint64_t rest = hewn_block_crossed(&signs, 0, z);
+        for (uint32_t y = 0; y < HEWN_BLOCK; y++) {
+            uint32_t vertex = hewn_block_row(blocks, block, y, z)->vertices[0];
+            for (uint32_t row = rest >> HEWN_BLOCK * y & 0xFF; row; row &= row - 1) {
+                uint32_t bit = hewn_lattice_lowest(row);
+                bool inside = signs.here[z] >> (bit + HEWN_BLOCK * y) & 1;
+                meet(found, start[0] + bit, vertex++, inside, &before[y]);
+            }
+        }
+    }
+}
+
+/* In the order of rows, as others are walked. */
+static void walk_blocks(bodies *found)
+{
+    const hewn_lattice_blocks *blocks = found->lattice->blocks;
+    for (uint64_t layer = 0, end; layer < blocks->count; layer = end) {
+        for (end = layer; end < blocks->count && blocks->surface[end].place[2] == blocks->surface[layer].place[2];)
+            end++;
+        for (uint32_t z = 0; z < HEWN_BLOCK; z++)
+            for (uint64_t bar = layer, next; bar < end; bar = next) {
+                for (next = bar; next < end && blocks->surface[next].place[1] == blocks->surface[bar].place[1];)
+                    next++;
+                walk_bar(found, bar, next, z);
+            }
     }
 }
 
@@ -114,9 +170,11 @@ static hewn_result sort_by_leftmost(bodies *found, hewn_error *error)
  * region is made of. */
 static hewn_result find_parents(bodies *found, hewn_error *error)
 {
-    for (uint32_t k = 0; k < found->lattice->dims[2]; k++)
+    for (uint32_t k = 0; k < found->lattice->dims[2] && !found->lattice->blocks; k++)
         for (uint32_t j = 0; j < found->lattice->dims[1]; j++)
             walk_row(found, j, k);
+    if (found->lattice->blocks)
+        walk_blocks(found);
     HEWN_TRY(sort_by_leftmost(found, error));
     for (uint32_t n = 0; n < found->count; n++) {
         shell *here = &found->shells[found->order[n]];
@@ -242,11 +300,16 @@ static bool is_kept(const bodies *found, uint64_t vertex)
     return found->shells[found->of[vertex]].kept;
 }
 
+static bool is_crossing_kept(const bodies *found, uint64_t crossing)
+{
+    return found->shells[shell_of(found, crossing)].kept;
+}
+
 static uint64_t count_kept(const bodies *found, uint64_t begin, uint64_t end)
 {
     uint64_t count = 0;
     for (uint64_t v = begin; v < end; v++)
-        count += is_kept(found, v);
+        count += is_crossing_kept(found, v);
     return count;
 }
 
@@ -262,13 +325,34 @@ static uint64_t count_caps(const bodies *found)
         uint64_t end = n + 1 < rows ? row[1].vertices[0] : lattice->vertex_count;
         uint32_t last = lattice->dims[0] - 2;
         if (bits[0] >> 1 & 1)
-            count += is_kept(found, row->vertices[0]);
+            count += is_crossing_kept(found, row->vertices[0]);
         if (bits[last / 64] >> last % 64 & 1)
-            count += is_kept(found, row->vertices[1] - 1);
+            count += is_crossing_kept(found, row->vertices[1] - 1);
         if (hewn_lattice_in_rim(lattice, 1, j) || hewn_lattice_in_rim(lattice, 1, j + 1))
             count += count_kept(found, row->vertices[1], row->vertices[2]);
         if (hewn_lattice_in_rim(lattice, 2, k) || hewn_lattice_in_rim(lattice, 2, k + 1))
             count += count_kept(found, row->vertices[2], end);
+    }
+    return count;
+}
+
+/* The same where samples are in blocks. */
+static uint64_t count_block_caps(const bodies *found)
+{
+    const hewn_lattice *lattice = found->lattice;
+    uint64_t count = 0;
+    for (uint64_t block = 0; block < lattice->blocks->count; block++) {
+        hewn_block_signs signs;
+        hewn_block_signs_load(lattice, lattice->blocks->surface[block].place, &signs);
+        for (uint32_t n = 0; n < 3 * HEWN_BLOCK_ROWS; n++) {
+            const uint32_t axis = n % 3, y = n / 3 % HEWN_BLOCK, z = n / 3 / HEWN_BLOCK;
+            const uint64_t row = (uint64_t)0xFF << HEWN_BLOCK * y;
+            const uint64_t crossed = hewn_block_crossed(&signs, axis, z) & row;
+            const uint64_t caps = hewn_block_rim_edges(lattice, block, axis, z);
+            uint32_t vertex = hewn_block_row(lattice->blocks, block, y, z)->vertices[axis];
+            for (uint64_t rest = crossed; rest; rest &= rest - 1, vertex++)
+                count += caps >> hewn_lattice_lowest(rest) & 1 && is_crossing_kept(found, vertex);
+        }
     }
     return count;
 }
@@ -309,7 +393,7 @@ static hewn_result run(bodies *found, hewn_lattice *lattice, const hewn_body_cho
     HEWN_TRY(choose(found, choice, counts, error));
     if (counts->kept_bodies + counts->kept_cavities == found->count)
         return HEWN_OK;
-    lattice->cap_vertices = count_caps(found);
+    lattice->cap_vertices = lattice->blocks ? count_block_caps(found) : count_caps(found);
     compact(found);
     return HEWN_OK;
 }

@@ -32,6 +32,8 @@ typedef struct hewn_lattice_row {
 
 typedef struct hewn_lattice {
     const hewn_volume *volume;
+    struct hewn_lattice_blocks
+        *blocks;      /* where samples are in blocks: signs and rows are there (iso/lattice_blocks.h) */
     uint64_t first;   /* sample (0, 0, 0) of the frame */
     uint32_t rim;     /* 1 where it is closed, else 0 */
     uint32_t dims[3]; /* with the rim */
@@ -52,6 +54,10 @@ typedef struct hewn_lattice {
     const uint32_t *table;  /* of patches, as in iso/mc33.h */
     bool flipped;           /* the table's inside is what is not inside here */
     bool normals;
+    bool nets;                       /* the table is that of surface nets (iso/lattice_nets.h), */
+    const hewn_triangles *crossings; /* and these are what vertices on edges are otherwise */
+    hewn_lattice_sums
+        *slices; /* or NULL: where counting puts what is before each slice of the slab, and after the last */
     hewn_lattice_sums before; /* the slab */
     hewn_lattice_sums after;  /* and after it, with what is in it */
     uint64_t reached;         /* vertices on edges with those of the slice after it */
@@ -142,6 +148,13 @@ static inline uint32_t hewn_lattice_pattern(const hewn_lattice_cells *cells, uin
                                                                         << (2 * i + 1);
     return pattern;
 }
+
+/* The value of the field at a sample, or 0 where its sign is not that of its bit; (i, j, k) may be in the rim, where it
+ * is 0. For the odd sample. */
+double hewn_lattice_value_at(const hewn_lattice *lattice, const uint32_t at[3], bool inside);
+
+/* Whether a sample is inside; it may be in the rim. For the odd sample. */
+bool hewn_lattice_inside_at(const hewn_lattice *lattice, const uint32_t at[3]);
 
 /* The place in the table of the patch for the cell at (i, j, k) with this pattern. */
 uint32_t hewn_lattice_patch(const hewn_lattice *lattice, uint32_t pattern, uint32_t i, uint32_t j, uint32_t k);

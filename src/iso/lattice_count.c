@@ -1,6 +1,8 @@
 /* What each row will emit, and where. */
 #include "base/error.h"
 #include "iso/decide.h"
+#include "iso/lattice_blocks.h"
+#include "iso/lattice_nets.h"
 #include "iso/lattice_sample.h"
 
 /* --- decisions ---------------------------------------------------------------------------------------------------- */
@@ -15,20 +17,53 @@ static bool touches_rim(const hewn_lattice *lattice, uint32_t i, uint32_t j, uin
     return false;
 }
 
+/* Where a sample is: NULL in the rim. */
+static const void *find_sample(const hewn_lattice *lattice, const uint32_t at[3], uint64_t *number)
+{
+    const hewn_volume *volume = lattice->volume;
+    for (int axis = 0; axis < 3; axis++)
+        if (hewn_lattice_in_rim(lattice, axis, at[axis]))
+            return NULL;
+    const uint32_t ijk[3] = {at[0] - lattice->rim, at[1] - lattice->rim, at[2] - lattice->rim};
+    if (volume->blocks)
+        return hewn_blocks_sample(volume->blocks, ijk, number);
+    *number = lattice->first + ijk[0] + volume->dims[0] * (ijk[1] + (uint64_t)volume->dims[1] * ijk[2]);
+    return volume->samples;
+}
+
+bool hewn_lattice_inside_at(const hewn_lattice *lattice, const uint32_t at[3])
+{
+    uint64_t number;
+    uint8_t inside = 0;
+    hewn_volume view = *lattice->volume;
+    view.samples = find_sample(lattice, at, &number);
+    if (view.samples)
+        hewn_threshold_apply(&lattice->threshold, &view, number, 1, &inside);
+    return inside;
+}
+
+double hewn_lattice_value_at(const hewn_lattice *lattice, const uint32_t at[3], bool inside)
+{
+    const hewn_volume *volume = lattice->volume;
+    uint64_t number;
+    const void *samples = find_sample(lattice, at, &number);
+    if (!samples)
+        return 0;
+    const double raw = hewn_lattice_raw(samples, number, volume->type);
+    return hewn_lattice_agree(lattice, hewn_lattice_field(lattice, raw, volume->type), inside);
+}
+
 uint32_t hewn_lattice_patch(const hewn_lattice *lattice, uint32_t pattern, uint32_t i, uint32_t j, uint32_t k)
 {
     uint32_t head = lattice->table[lattice->flipped ? pattern ^ 255u : pattern];
     if (!(head & HEWN_MC33_DECIDES))
         return head & 0xFFFF;
-    const hewn_volume *volume = lattice->volume;
+    if (lattice->nets)
+        return hewn_nets_decide(lattice, head, (const uint32_t[3]){i, j, k});
     double values[8];
     for (uint32_t c = 0; c < 8; c++) {
-        uint32_t at[3] = {i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)};
-        bool rim = hewn_lattice_in_rim(lattice, 0, at[0]) || hewn_lattice_in_rim(lattice, 1, at[1]) ||
-                   hewn_lattice_in_rim(lattice, 2, at[2]);
-        uint64_t row = (uint64_t)(at[2] - lattice->rim) * volume->dims[1] + (at[1] - lattice->rim);
-        uint64_t number = lattice->first + row * volume->dims[0] + (at[0] - lattice->rim);
-        values[c] = rim ? 0 : hewn_lattice_signed(lattice, number, pattern >> c & 1, volume->type);
+        const uint32_t at[3] = {i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)};
+        values[c] = hewn_lattice_value_at(lattice, at, pattern >> c & 1);
     }
     /* What the table calls inside is what is below 0: the values' own sign says so, but for those that became 0. */
     uint32_t faces = hewn_decide_faces(values, head >> 16 & 63);
@@ -102,6 +137,8 @@ static void sum_up(hewn_lattice *lattice)
         hewn_lattice_row *row = &lattice->rows[i], count = *row;
         if (i == own)
             lattice->after = sums;
+        if (lattice->slices && i % lattice->dims[1] == 0 && i < own)
+            lattice->slices[i / lattice->dims[1]] = sums;
         for (int axis = 0; axis < 3; axis++) {
             row->vertices[axis] = (uint32_t)sums.vertices;
             sums.vertices += count.vertices[axis];
@@ -113,10 +150,12 @@ static void sum_up(hewn_lattice *lattice)
     }
     if (rows == own)
         lattice->after = sums;
+    if (lattice->slices)
+        lattice->slices[lattice->end - lattice->begin] = lattice->after;
     lattice->reached = sums.vertices;
 }
 
-hewn_result hewn_lattice_count(hewn_lattice *lattice, hewn_error *error)
+static void count_rows(hewn_lattice *lattice)
 {
     uint64_t active = 0, decided = 0, caps = 0;
 #pragma omp parallel for schedule(dynamic, 4) reduction(+ : active, decided, caps) if (lattice->dims[2] > 8)
@@ -140,6 +179,14 @@ hewn_result hewn_lattice_count(hewn_lattice *lattice, hewn_error *error)
     lattice->active_cells = active;
     lattice->decided_cells = decided;
     lattice->cap_vertices = caps;
+}
+
+hewn_result hewn_lattice_count(hewn_lattice *lattice, hewn_error *error)
+{
+    if (lattice->blocks)
+        hewn_lattice_blocks_count(lattice);
+    else
+        count_rows(lattice);
     uint64_t vertices = lattice->reached + lattice->after.centres;
     if (vertices >= UINT32_MAX || lattice->after.triangles > UINT64_MAX / 64)
         return hewn_fail(error, HEWN_LIMIT, "the surface needs %llu vertices%s, more than indices can name",

@@ -25,10 +25,10 @@ HEWN_LATTICE_INLINE double hewn_lattice_raw(const void *samples, uint64_t at, he
     return 0;
 }
 
-/* The field that is meshed; 0 where the sample is not a number. */
-HEWN_LATTICE_INLINE double hewn_lattice_value(const hewn_lattice *lattice, uint64_t at, hewn_voxel type)
+/* The field that is meshed, of a sample; 0 where that is not a number. */
+HEWN_LATTICE_INLINE double hewn_lattice_field(const hewn_lattice *lattice, double raw, hewn_voxel type)
 {
-    double value = lattice->rise * (hewn_lattice_raw(lattice->volume->samples, at, type) - lattice->level);
+    double value = lattice->rise * (raw - lattice->level);
     if (type == HEWN_VOXEL_HALF || type == HEWN_VOXEL_FLOAT || type == HEWN_VOXEL_DOUBLE) {
         value = value > HEWN_LATTICE_MOST ? HEWN_LATTICE_MOST : value;
         value = value < -HEWN_LATTICE_MOST ? -HEWN_LATTICE_MOST : value;
@@ -37,12 +37,21 @@ HEWN_LATTICE_INLINE double hewn_lattice_value(const hewn_lattice *lattice, uint6
     return value;
 }
 
-/* The same where its sign is that of the sample's bit, else 0: the level is rounded, the bits are not. */
-HEWN_LATTICE_INLINE double hewn_lattice_signed(const hewn_lattice *lattice, uint64_t at, bool inside, hewn_voxel type)
+HEWN_LATTICE_INLINE double hewn_lattice_value(const hewn_lattice *lattice, uint64_t at, hewn_voxel type)
 {
-    double value = hewn_lattice_value(lattice, at, type);
+    return hewn_lattice_field(lattice, hewn_lattice_raw(lattice->volume->samples, at, type), type);
+}
+
+/* The same where its sign is that of the sample's bit, else 0: the level is rounded, the bits are not. */
+HEWN_LATTICE_INLINE double hewn_lattice_agree(const hewn_lattice *lattice, double value, bool inside)
+{
     bool below = inside != lattice->above;
     return (value < 0) == below ? value : 0;
+}
+
+HEWN_LATTICE_INLINE double hewn_lattice_signed(const hewn_lattice *lattice, uint64_t at, bool inside, hewn_voxel type)
+{
+    return hewn_lattice_agree(lattice, hewn_lattice_value(lattice, at, type), inside);
 }
 
 #endif

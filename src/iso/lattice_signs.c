@@ -8,24 +8,6 @@
 
 enum { CHUNK = 4096 }; /* samples that are compared at once: a multiple of 64 */
 
-/* Eight bytes that are 0 or 1 become eight bits: the product moves byte i from bit 8 i to bit 56 + i, and no two of its
- * terms meet. */
-static uint64_t pack_eight(const uint8_t *bytes)
-{
-    uint64_t eight = 0;
-    for (int i = 0; i < 8; i++)
-        eight |= (uint64_t)bytes[i] << 8 * i; /* one load where memory has this order */
-    return eight * 0x0102040810204080u >> 56;
-}
-
-static uint64_t pack_word(const uint8_t bytes[64])
-{
-    uint64_t word = 0;
-    for (int i = 0; i < 8; i++)
-        word |= pack_eight(bytes + 8 * i) << 8 * i;
-    return word;
-}
-
 /* A row of samples in chunks; each begins at a word, so the first has a sample less where there is a rim before it. */
 static void find_row(const hewn_lattice *lattice, uint64_t from, uint64_t *to)
 {
@@ -38,7 +20,7 @@ static void find_row(const hewn_lattice *lattice, uint64_t from, uint64_t *to)
         hewn_threshold_apply(&lattice->threshold, lattice->volume, from + at, take, bytes + lead);
         memset(bytes + used, 0, 64 * words - used);
         for (uint32_t i = 0; i < words; i++)
-            to[word + i] = pack_word(bytes + 64 * i);
+            to[word + i] = hewn_threshold_pack(bytes + 64 * i);
         word += words;
         at += take;
         lead = 0;
@@ -47,6 +29,8 @@ static void find_row(const hewn_lattice *lattice, uint64_t from, uint64_t *to)
 
 void hewn_lattice_find_signs(hewn_lattice *lattice)
 {
+    if (lattice->blocks) /* they were found before slabs were laid */
+        return;
     uint64_t rows = (uint64_t)lattice->dims[1] * (hewn_lattice_signs_end(lattice) - lattice->begin);
 #pragma omp parallel for schedule(static) if (rows > 64)
     for (uint64_t row = 0; row < rows; row++) {

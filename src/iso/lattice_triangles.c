@@ -1,42 +1,34 @@
 /* Triangles of cells, and the vertices that lie in cells. */
 #include <math.h>
 
-#include "iso/lattice.h"
+#include "iso/lattice_blocks.h"
+#include "iso/lattice_nets.h"
 #include "iso/patch.h"
 
-/* The row of cells that is being emitted: how many vertices on edges of each of its rows of samples lie before the cell
- * at hand. Whoever has a crossed edge is active, so each crossed edge is passed. */
-typedef struct cell_row {
-    const hewn_lattice *lattice;
-    hewn_triangles *out;
-    uint32_t along[4];     /* edges along i, of rows (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1) */
-    uint32_t beside[2];    /* along j, of rows (j, k), (j, k + 1) */
-    uint32_t upright[2];   /* along k, of rows (j, k), (j + 1, k) */
-    uint32_t centre;       /* the next one's number */
-    uint64_t centre_place; /* and its place among the slab's vertices */
-    uint64_t triangle;     /* the next one's place */
-} cell_row;
-
-static cell_row begin_row(const hewn_lattice *lattice, hewn_triangles *out, uint32_t j, uint32_t k)
+hewn_lattice_cell_row hewn_lattice_begin_cells(const hewn_lattice *lattice, hewn_triangles *out,
+                                               const hewn_lattice_row *const begins[4])
 {
-    cell_row row = {.lattice = lattice, .out = out};
+    hewn_lattice_cell_row row = {.lattice = lattice, .out = out};
     for (uint32_t i = 0; i < 4; i++) {
-        const hewn_lattice_row *begin = hewn_lattice_row_at(lattice, j + (i & 1), k + (i >> 1));
-        row.along[i] = begin->vertices[0];
+        row.along[i] = begins[i]->vertices[0];
         if ((i & 1) == 0)
-            row.beside[i >> 1] = begin->vertices[1];
+            row.beside[i >> 1] = begins[i]->vertices[1];
         if (i < 2)
-            row.upright[i] = begin->vertices[2];
+            row.upright[i] = begins[i]->vertices[2];
     }
-    const hewn_lattice_row *own = hewn_lattice_row_at(lattice, j, k);
-    row.centre = (uint32_t)lattice->vertex_count + own->centres;
-    row.centre_place = lattice->reached - lattice->before.vertices + own->centres - lattice->before.centres;
+    const hewn_lattice_row *own = begins[0];
+    row.centre = own->centres;
+    row.centre_place = own->centres - lattice->before.centres;
+    if (!lattice->nets) { /* vertices on edges come first */
+        row.centre += (uint32_t)lattice->vertex_count;
+        row.centre_place += lattice->reached - lattice->before.vertices;
+    }
     row.triangle = own->triangles - lattice->before.triangles;
     return row;
 }
 
 /* The vertices on the edges of a cell, as iso/cube.h numbers them; what is not crossed has some other number. */
-static void name_edges(cell_row *row, uint32_t pattern, uint32_t names[16])
+static void name_edges(hewn_lattice_cell_row *row, uint32_t pattern, uint32_t names[16])
 {
     uint32_t ahead = pattern ^ pattern >> 2, over = pattern ^ pattern >> 4, along = pattern ^ pattern >> 1;
     for (uint32_t i = 0; i < 4; i++) {
@@ -63,7 +55,7 @@ static bool in_face(uint32_t edge, uint32_t face)
 }
 
 /* The mean of crossings, halfway from those in a face where `centre` names one (iso/patch.h). */
-static void place_centre(const cell_row *row, const uint32_t names[16], uint32_t centre)
+static void place_centre(const hewn_lattice_cell_row *row, const uint32_t names[16], uint32_t centre)
 {
     const hewn_triangles *out = row->out;
     uint64_t vertex = row->centre_place;
@@ -95,10 +87,14 @@ static void place_centre(const cell_row *row, const uint32_t names[16], uint32_t
 
 /* --- cells -------------------------------------------------------------------------------------------------------- */
 
-static void cut_cell(cell_row *row, uint32_t pattern, const uint32_t *record, bool turn)
+void hewn_lattice_cut_cell(hewn_lattice_cell_row *row, uint32_t pattern, const uint32_t *record, bool turn)
 {
     uint32_t names[16] = {0};
     name_edges(row, pattern, names);
+    if (row->lattice->nets) {
+        hewn_nets_place(row, names, pattern, record, turn);
+        return;
+    }
     uint32_t triangles = record[0] & 255, centres = record[0] >> 8;
     for (uint32_t i = 0; i < centres; i++) {
         place_centre(row, names, record[1 + i / 2] >> 16 * (i % 2) & 0xFFFF);
@@ -118,20 +114,27 @@ static void cut_cell(cell_row *row, uint32_t pattern, const uint32_t *record, bo
 
 void hewn_lattice_emit_triangles(const hewn_lattice *lattice, hewn_triangles *out)
 {
+    if (lattice->blocks) {
+        hewn_lattice_blocks_emit_triangles(lattice, out);
+        return;
+    }
     bool turn = lattice->flipped != lattice->mirrors;
 #pragma omp parallel for schedule(dynamic, 4) if (lattice->dims[2] > 8)
     for (uint32_t k = lattice->begin; k < lattice->end; k++) {
         if (k + 1 == lattice->dims[2])
             continue;
         for (uint32_t j = 0; j + 1 < lattice->dims[1]; j++) {
-            cell_row row = begin_row(lattice, out, j, k);
+            const hewn_lattice_row *begins[4];
+            for (uint32_t i = 0; i < 4; i++)
+                begins[i] = hewn_lattice_row_at(lattice, j + (i & 1), k + (i >> 1));
+            hewn_lattice_cell_row row = hewn_lattice_begin_cells(lattice, out, begins);
             hewn_lattice_cells cells = hewn_lattice_cells_at(lattice, j, k);
             for (uint32_t word = 0; word < lattice->words; word++) {
                 hewn_lattice_load(lattice, &cells, word);
                 for (uint64_t rest = cells.active; rest; rest &= rest - 1) {
                     uint32_t bit = hewn_lattice_lowest(rest), pattern = hewn_lattice_pattern(&cells, bit);
                     uint32_t place = hewn_lattice_patch(lattice, pattern, 64 * word + bit, j, k);
-                    cut_cell(&row, pattern, lattice->table + place, turn);
+                    hewn_lattice_cut_cell(&row, pattern, lattice->table + place, turn);
                 }
             }
         }

@@ -18,4 +18,23 @@ hewn_threshold hewn_threshold_find(const hewn_volume *volume, double iso, bool b
 void hewn_threshold_apply(const hewn_threshold *threshold, const hewn_volume *volume, uint64_t at, size_t count,
                           uint8_t *out);
 
+/* Eight bytes that are 0 or 1 become eight bits: the product moves byte i from bit 8 i to bit 56 + i, and no two of its
+ * terms meet. */
+static inline uint64_t hewn_threshold_pack_eight(const uint8_t *bytes)
+{
+    uint64_t eight = 0;
+    for (int i = 0; i < 8; i++)
+        eight |= (uint64_t)bytes[i] << 8 * i; /* one load where memory has this order */
+    return eight * 0x0102040810204080u >> 56;
+}
+
+/* 64 of what hewn_threshold_apply() writes, a bit each. */
+static inline uint64_t hewn_threshold_pack(const uint8_t bytes[64])
+{
+    uint64_t word = 0;
+    for (int i = 0; i < 8; i++)
+        word |= hewn_threshold_pack_eight(bytes + 8 * i) << 8 * i;
+    return word;
+}
+
 #endif

@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "iso/bodies.h"
+#include "iso/lattice_blocks.h"
+#include "iso/lattice_nets.h"
 #include "iso/marching_cubes.h"
 
 /* The coarsest that floats may be: as a part of a voxel. */
@@ -58,7 +60,8 @@ static double find_margin(const hewn_lattice *lattice, const double inverse[9])
     (void)frexp(most, &exponent);
     for (int i = 0; i < 9; i++)
         sum += inverse[i] * inverse[i];
-    return fmax(HEWN_LATTICE_MARGIN, 2 * ldexp(1, exponent - 24) * sqrt(sum));
+    /* The mean of a loop is at least a third as far from a cell's face as those of its crossings that are not in it. */
+    return fmax(HEWN_LATTICE_MARGIN, (lattice->nets ? 6 : 2) * ldexp(1, exponent - 24) * sqrt(sum));
 }
 
 static hewn_result set_place(hewn_lattice *lattice, const double *place, hewn_error *error)
@@ -113,9 +116,13 @@ static hewn_result check(const hewn_volume *volume, const hewn_volume_extract_de
                          "bodies can be chosen where the surface is closed, not with open");
     if (desc->keep && !(desc->keep->least_volume >= 0 && isfinite(desc->keep->least_volume)))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a least volume of %g makes no sense", desc->keep->least_volume);
-    if (method != HEWN_METHOD_MC33 && method != HEWN_METHOD_MARCHING_CUBES)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33 or mc, not by %s",
+    if (method != HEWN_METHOD_MC33 && method != HEWN_METHOD_MARCHING_CUBES && method != HEWN_METHOD_NETS)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc or nets, not by %s",
                          hewn_method_name(method) ? hewn_method_name(method) : "another method");
+    if (method == HEWN_METHOD_NETS && desc->open)
+        return hewn_fail(
+            error, HEWN_INVALID_ARGUMENT,
+            "nets close the surface at the border: their faces lie across it; mc33 and mc can leave it open");
     return HEWN_OK;
 }
 
@@ -156,15 +163,18 @@ hewn_result hewn_volume_extraction_begin(const hewn_volume *volume, const hewn_v
     HEWN_TRY(check(volume, desc, method, error));
     HEWN_TRY(hewn_progress_report(desc->progress, "extract", 0, error));
     set_field(lattice, desc);
+    lattice->nets = method == HEWN_METHOD_NETS;
     HEWN_TRY(set_place(lattice, desc->place, error));
     HEWN_TRY(lay(run, error));
     lattice->flipped = method == HEWN_METHOD_MC33 && lattice->above;
-    hewn_result result = method == HEWN_METHOD_MC33 ? hewn_mc33_table_derive(&run->table, error)
-                                                    : take_marching_cubes(&run->table, error);
+    hewn_result result = method == HEWN_METHOD_MC33   ? hewn_mc33_table_derive(&run->table, error)
+                         : method == HEWN_METHOD_NETS ? hewn_nets_table_make(&run->table, error)
+                                                      : take_marching_cubes(&run->table, error);
     lattice->table = run->table.words;
     run->stats.method = method;
     run->stats.below = !lattice->above;
-    return result;
+    HEWN_TRY(result);
+    return volume->blocks ? hewn_lattice_blocks_create(lattice, error) : HEWN_OK;
 }
 
 void hewn_volume_extraction_free_slab(hewn_volume_extraction *run)
@@ -174,11 +184,16 @@ void hewn_volume_extraction_free_slab(hewn_volume_extraction *run)
     hewn_free(lattice->rows);
     lattice->inside = NULL;
     lattice->rows = NULL;
+    if (lattice->blocks) {
+        hewn_free(lattice->blocks->rows);
+        lattice->blocks->rows = NULL;
+    }
 }
 
 void hewn_volume_extraction_clear(hewn_volume_extraction *run)
 {
     hewn_volume_extraction_free_slab(run);
+    hewn_lattice_blocks_destroy(&run->lattice);
     hewn_mc33_table_destroy(&run->table);
 }
 
@@ -197,6 +212,8 @@ uint64_t hewn_volume_extraction_bytes(const hewn_volume_extraction *run, uint32_
     hewn_lattice slab = run->lattice;
     slab.begin = begin;
     slab.end = end;
+    if (slab.blocks)
+        return hewn_lattice_blocks_row_bytes(&slab, begin, end);
     return sign_words(&slab) * sizeof *slab.inside + row_count(&slab) * sizeof *slab.rows;
 }
 
@@ -206,6 +223,8 @@ hewn_result hewn_volume_extraction_lay(hewn_volume_extraction *run, uint32_t beg
     hewn_volume_extraction_free_slab(run);
     lattice->begin = begin;
     lattice->end = end;
+    if (lattice->blocks)
+        return hewn_lattice_blocks_lay(lattice, error);
     lattice->inside = hewn_alloc(sign_words(lattice), sizeof *lattice->inside);
     lattice->rows = hewn_alloc(row_count(lattice), sizeof *lattice->rows);
     if (!lattice->inside || !lattice->rows)
@@ -221,10 +240,11 @@ hewn_result hewn_volume_extraction_explain_empty(const hewn_volume_extraction *r
 
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
-static hewn_result allocate(const hewn_lattice *lattice, hewn_triangles *out, hewn_error *error)
+static hewn_result allocate(const hewn_lattice *lattice, uint64_t vertices, uint64_t triangles, hewn_triangles *out,
+                            hewn_error *error)
 {
-    out->vertex_count = lattice->after.vertices + lattice->after.centres;
-    out->triangle_count = lattice->after.triangles;
+    out->vertex_count = vertices;
+    out->triangle_count = triangles;
     out->positions = hewn_alloc(out->vertex_count, 3 * sizeof *out->positions);
     out->normals = lattice->normals ? hewn_alloc(out->vertex_count, 3 * sizeof *out->normals) : NULL;
     out->indices = hewn_alloc(out->triangle_count, 3 * sizeof *out->indices);
@@ -232,6 +252,37 @@ static hewn_result allocate(const hewn_lattice *lattice, hewn_triangles *out, he
         return HEWN_OK;
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu vertices and %llu triangles",
                      (unsigned long long)out->vertex_count, (unsigned long long)out->triangle_count);
+}
+
+/* Crossings first, then vertices in cells and quads between these. */
+static hewn_result make_nets(hewn_volume_extraction *run, hewn_triangles *out, hewn_error *error)
+{
+    hewn_lattice *lattice = &run->lattice;
+    hewn_triangles crossings = {0};
+    hewn_result result = allocate(lattice, lattice->after.vertices, 0, &crossings, error);
+    if (result == HEWN_OK)
+        result = allocate(lattice, lattice->after.centres, 2 * lattice->after.vertices, out, error);
+    if (result == HEWN_OK) {
+        hewn_lattice_emit_vertices(lattice, &crossings);
+        lattice->crossings = &crossings;
+        hewn_lattice_emit_triangles(lattice, out);
+        lattice->crossings = NULL;
+        result = hewn_volume_extraction_stage(run, "vertices", 0.8, error);
+    }
+    hewn_triangles_destroy(&crossings);
+    HEWN_TRY(result);
+    hewn_nets_cut_quads(lattice, out);
+    return HEWN_OK;
+}
+
+static hewn_result make_surface(hewn_volume_extraction *run, hewn_triangles *out, hewn_error *error)
+{
+    const hewn_lattice *lattice = &run->lattice;
+    HEWN_TRY(allocate(lattice, lattice->after.vertices + lattice->after.centres, lattice->after.triangles, out, error));
+    hewn_lattice_emit_vertices(lattice, out);
+    HEWN_TRY(hewn_volume_extraction_stage(run, "vertices", 0.8, error));
+    hewn_lattice_emit_triangles(lattice, out);
+    return HEWN_OK;
 }
 
 static hewn_result run_stages(hewn_volume_extraction *run, hewn_triangles *out, hewn_error *error)
@@ -246,12 +297,9 @@ static hewn_result run_stages(hewn_volume_extraction *run, hewn_triangles *out, 
     run->stats.decided_cells = lattice->decided_cells;
     run->stats.cap_vertices = lattice->cap_vertices;
     HEWN_TRY(hewn_volume_extraction_stage(run, "count", 0.5, error));
-    if (lattice->after.triangles == 0)
+    if (lattice->nets ? lattice->after.vertices == 0 : lattice->after.triangles == 0)
         return hewn_volume_extraction_explain_empty(run, error);
-    HEWN_TRY(allocate(lattice, out, error));
-    hewn_lattice_emit_vertices(lattice, out);
-    HEWN_TRY(hewn_volume_extraction_stage(run, "vertices", 0.8, error));
-    hewn_lattice_emit_triangles(lattice, out);
+    HEWN_TRY(lattice->nets ? make_nets(run, out, error) : make_surface(run, out, error));
     HEWN_TRY(hewn_volume_extraction_stage(run, "triangles", run->desc->keep ? 0.9 : 1, error));
     if (!run->desc->keep)
         return HEWN_OK;

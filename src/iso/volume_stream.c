@@ -5,6 +5,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "iso/lattice_blocks.h"
 #include "iso/volume_extraction.h"
 
 /* Bytes a vertex and a triangle that sinks are reckoned to take before there is a part to ask them about. */
@@ -25,7 +26,8 @@ static uint64_t kept_bytes(const stream *of)
 {
     uint64_t table = ((uint64_t)of->slices + 1) * sizeof *of->before;
     uint64_t patches = of->run.table.count * sizeof *of->run.table.words;
-    return of->samples + table + patches + (of->sink->bytes ? of->sink->bytes(of->sink->user, NULL) : 0);
+    uint64_t signs = of->run.lattice.blocks ? hewn_lattice_blocks_bytes(&of->run.lattice) : 0;
+    return of->samples + signs + table + patches + (of->sink->bytes ? of->sink->bytes(of->sink->user, NULL) : 0);
 }
 
 /* Samples that a slab looks at: normals reach one slice farther than edges. */
@@ -41,6 +43,8 @@ static uint64_t file_bytes(const stream *of, uint32_t begin, uint32_t end)
 {
     const hewn_volume *volume = of->run.lattice.volume;
     uint32_t range[2];
+    if (volume->blocks)
+        return 0; /* all of it counts */
     find_samples(of, begin, end, range);
     uint64_t slice = (uint64_t)volume->dims[0] * volume->dims[1] * hewn_voxel_size(volume->type);
     return volume->mapped ? slice * (range[1] - range[0]) : 0;
@@ -116,11 +120,6 @@ static uint32_t find_end(const stream *of, uint32_t begin, uint32_t most,
 static void take_counts(stream *of)
 {
     const hewn_lattice *lattice = &of->run.lattice;
-    for (uint32_t k = lattice->begin; k < lattice->end; k++) {
-        const hewn_lattice_row *first = hewn_lattice_row_at(lattice, 0, k);
-        of->before[k] = (hewn_lattice_sums){first->vertices[0], first->centres, first->triangles};
-    }
-    of->before[lattice->end] = lattice->after;
     hewn_volume_extract_stats *stats = &of->run.stats;
     stats->active_cells += lattice->active_cells;
     stats->decided_cells += lattice->decided_cells;
@@ -136,11 +135,13 @@ static hewn_result count_all(stream *of, hewn_error *error)
         HEWN_TRY(hewn_progress_report(of->run.desc->progress, "extract", 0.4 * begin / of->slices, error));
         HEWN_TRY(hewn_volume_extraction_lay(&of->run, begin, end, error));
         lattice->before = of->before[begin];
+        lattice->slices = of->before + begin;
         hewn_lattice_find_signs(lattice);
         HEWN_TRY(hewn_lattice_count(lattice, error));
         take_counts(of);
         forget(of, begin, end);
     }
+    lattice->slices = NULL;
     lattice->vertex_count = of->before[of->slices].vertices;
     return HEWN_OK;
 }
@@ -235,7 +236,7 @@ static hewn_result run_passes(stream *of, hewn_error *error)
     hewn_volume_extraction *run = &of->run;
     const hewn_volume *volume = run->lattice.volume;
     of->slices = run->lattice.dims[2];
-    of->samples = volume->mapped ? 0 : volume->memory_length;
+    of->samples = volume->mapped && !volume->blocks ? 0 : volume->memory_length;
     of->before = hewn_alloc_zero((size_t)of->slices + 1, sizeof *of->before);
     if (!of->before)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for counts of %u slices", of->slices);
@@ -257,7 +258,10 @@ hewn_result hewn_volume_extract_parts(const hewn_volume *volume, const hewn_volu
                                       const hewn_mesh_sink *sink, hewn_volume_extract_stats *stats, hewn_error *error)
 {
     stream of = {.sink = sink};
-    hewn_result result = hewn_volume_extraction_begin(volume, desc, &of.run, error);
+    hewn_result result =
+        desc->method == HEWN_METHOD_NETS
+            ? hewn_fail(error, HEWN_INVALID_ARGUMENT, "nets are made in one piece; mc33 and mc come in parts")
+            : hewn_volume_extraction_begin(volume, desc, &of.run, error);
     if (result == HEWN_OK)
         result = run_passes(&of, error);
     hewn_volume_extraction_clear(&of.run);

@@ -11,6 +11,7 @@
 static hewn_result read_and_measure(hewn_volume_facts *job, hewn_error *error)
 {
     job->format = job->read.format != HEWN_VOLUME_UNKNOWN ? job->read.format : hewn_volume_format_of_file(job->path);
+    job->read.blocks = true;
     HEWN_TRY(hewn_volume_read(job->path, &job->read, &job->volume, error));
     job->stages[0].end = job->stages[1].begin = hewn_clock_now() - job->began;
     if (job->frame >= job->volume.frame_count)

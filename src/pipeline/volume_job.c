@@ -49,11 +49,18 @@ static hewn_result check_space(const volume_job *job, hewn_error *error)
 
 static hewn_result check_method(const hewn_volume_job_desc *desc, hewn_error *error)
 {
-    if (desc->method == HEWN_METHOD_DEFAULT || desc->method == HEWN_METHOD_MC33 ||
-        desc->method == HEWN_METHOD_MARCHING_CUBES)
-        return HEWN_OK;
-    return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33 or mc, not by %s",
-                     hewn_method_name(desc->method) ? hewn_method_name(desc->method) : "another method");
+    const bool known = desc->method == HEWN_METHOD_DEFAULT || desc->method == HEWN_METHOD_MC33 ||
+                       desc->method == HEWN_METHOD_MARCHING_CUBES || desc->method == HEWN_METHOD_NETS;
+    if (!known)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc or nets, not by %s",
+                         hewn_method_name(desc->method) ? hewn_method_name(desc->method) : "another method");
+    if (desc->method == HEWN_METHOD_NETS && desc->open)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "nets close the surface at the border; mc33 and mc can leave it open");
+    if (desc->method == HEWN_METHOD_NETS && desc->max_memory > 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "nets are made in one piece; mc33 and mc keep to a limit of memory");
+    return HEWN_OK;
 }
 
 static hewn_result check(volume_job *job, hewn_error *error)
@@ -104,6 +111,7 @@ static hewn_result load(volume_job *job, hewn_error *error)
     hewn_volume_report *report = job->report;
     hewn_volume_read_desc read = desc->read;
     read.progress = desc->progress;
+    read.blocks = !desc->filter; /* filters write samples that lie in a row */
     hewn_stage_begin(&job->stages);
     report->from = read.format != HEWN_VOLUME_UNKNOWN ? read.format : hewn_volume_format_of_file(desc->input);
     HEWN_TRY(read_within(job, &read, error));

@@ -154,6 +154,8 @@ hewn_result hewn_volume_find_bricks(const hewn_volume *volume, uint64_t frame, h
                                     hewn_error *error)
 {
     *out = (hewn_volume_bricks){0};
+    if (volume->blocks)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "bricks are found in samples that lie in a row, not in blocks");
     for (int axis = 0; axis < 3; axis++) {
         uint32_t cells = volume->dims[axis] - 1;
         out->dims[axis] = cells == 0 ? 1 : (cells - 1) / HEWN_BRICK_CELLS + 1;

@@ -18,12 +18,13 @@ static void count_share(const hewn_volume *volume, uint64_t frame, uint64_t part
     double lo = wanted->lo, hi = wanted->hi, width = hi - lo, scale = wanted->count;
     for (uint64_t index = stretches * part / parts; index < stretches * (part + 1) / parts; index++) {
         double samples[HEWN_VOXEL_STRETCH];
-        size_t count = hewn_volume_stretch(volume, frame, index, samples);
+        uint64_t weight;
+        size_t count = hewn_volume_stretch(volume, frame, index, samples, &weight);
         for (size_t i = 0; i < count; i++) {
             if (!(samples[i] >= lo && samples[i] <= hi))
                 continue;
             uint32_t bin = (uint32_t)((samples[i] - lo) / width * scale);
-            bins[bin < wanted->count ? bin : wanted->count - 1]++;
+            bins[bin < wanted->count ? bin : wanted->count - 1] += weight;
         }
     }
 }

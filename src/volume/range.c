@@ -12,15 +12,18 @@ hewn_volume_range hewn_volume_find_range(const hewn_volume *volume, uint64_t fra
 #pragma omp parallel for schedule(static) reduction(min : lo) reduction(max : hi) reduction(+ : finite, nan) if (stretches >= HEWN_VOXEL_ALONE)
     for (uint64_t index = 0; index < stretches; index++) {
         double samples[HEWN_VOXEL_STRETCH];
-        size_t count = hewn_volume_stretch(volume, frame, index, samples);
+        uint64_t weight, finite_here = 0, nan_here = 0;
+        size_t count = hewn_volume_stretch(volume, frame, index, samples, &weight);
         for (size_t i = 0; i < count; i++) {
             double sample = samples[i];
             bool good = sample - sample == 0; /* finite */
-            finite += good;
-            nan += sample != sample;
+            finite_here += good;
+            nan_here += sample != sample;
             lo = good && sample < lo ? sample : lo;
             hi = good && sample > hi ? sample : hi;
         }
+        finite += weight * finite_here;
+        nan += weight * nan_here;
     }
     hewn_volume_range range = {.finite_count = finite, .nan_count = nan, .infinite_count = size - finite - nan};
     range.sample_lo = finite > 0 ? lo : NAN;
@@ -67,11 +70,12 @@ static void count_digits(const hewn_volume *volume, uint64_t frame, uint64_t pre
         uint64_t end = stretches * (uint64_t)(thread + 1) / (uint64_t)threads;
         for (uint64_t index = begin; index < end; index++) {
             double samples[HEWN_VOXEL_STRETCH];
-            size_t count = hewn_volume_stretch(volume, frame, index, samples);
+            uint64_t weight;
+            size_t count = hewn_volume_stretch(volume, frame, index, samples, &weight);
             for (size_t i = 0; i < count; i++) {
                 uint64_t key = key_of(samples[i]);
                 if (samples[i] - samples[i] == 0 && (done == 0 || key >> (64 - done) == prefix))
-                    own[key >> shift & (DIGITS - 1)]++;
+                    own[key >> shift & (DIGITS - 1)] += weight;
             }
         }
     }

@@ -43,6 +43,7 @@ hewn_result hewn_volume_smooth(const hewn_volume *volume, const hewn_volume_smoo
     made.frame_count = 1;
     made.type = type_after(volume->type, desc->filter);
     made.mapped = false;
+    made.blocks = NULL;
     made.memory_length = (size_t)hewn_volume_frame_size(volume) * hewn_voxel_size(made.type);
     made.memory = hewn_alloc(made.memory_length, 1);
     made.samples = made.memory;

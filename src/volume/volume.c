@@ -25,6 +25,8 @@ uint64_t hewn_volume_frame_size(const hewn_volume *volume)
 
 const void *hewn_volume_frame(const hewn_volume *volume, uint64_t frame)
 {
+    if (!volume->samples)
+        return NULL;
     return (const char *)volume->samples + frame * hewn_volume_frame_size(volume) * hewn_voxel_size(volume->type);
 }
 
@@ -78,7 +80,7 @@ hewn_result hewn_volume_check(const hewn_volume *volume, hewn_error *error)
 
 void hewn_volume_forget_samples(const hewn_volume *volume, uint64_t at, uint64_t count)
 {
-    if (!volume->mapped)
+    if (!volume->mapped || volume->blocks)
         return;
     uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE);
     size_t size = hewn_voxel_size(volume->type);

@@ -168,10 +168,10 @@ static void test_vdb_leaves(void **state)
     uint64_t compared = 0;
     for (uint64_t leaf = 0; leaf < facts.leaf_count; leaf++) {
         int32_t origin[3];
-        assert_true(module->leaf(grid, leaf, origin, samples));
+        module->leaf(grid, leaf, origin, samples);
         for (int at = 0; at < HEWN_VDB_LEAF; at++) {
-            int64_t i = origin[0] + at / 64 - facts.lo[0] + 1, j = origin[1] + at / 8 % 8 - facts.lo[1] + 1,
-                    k = origin[2] + at % 8 - facts.lo[2] + 1;
+            int64_t i = origin[0] + at % 8 - facts.lo[0] + 1, j = origin[1] + at / 8 % 8 - facts.lo[1] + 1,
+                    k = origin[2] + at / 64 - facts.lo[2] + 1;
             if (i < 0 || j < 0 || k < 0 || i >= volume.dims[0] || j >= volume.dims[1] || k >= volume.dims[2])
                 continue;
             uint64_t index = (uint64_t)i + volume.dims[0] * ((uint64_t)j + volume.dims[1] * (uint64_t)k);

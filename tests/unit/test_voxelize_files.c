@@ -102,16 +102,15 @@ static void fields_are_level_sets(void **state)
 /* --- back to meshes -------------------------------------------------------------------------------------------------
  */
 
-/* Meshes the volume and returns how far the two surfaces are apart. */
+/* Meshes the volume, which says itself that it is a level set, and returns how far the two surfaces are apart. */
 static double back_again(const char *mesh, const char *volume, hewn_volume_report *report)
 {
     hewn_error error = {0};
-    hewn_iso iso = {.kind = HEWN_ISO_NUMBER, .number = 0};
     const char *made = in_folder("back.ply");
-    hewn_volume_job_desc desc = {.input = volume, .output = made, .iso = &iso};
-    desc.inside = HEWN_INSIDE_BELOW;
+    const hewn_volume_job_desc desc = {.input = volume, .output = made};
     if (hewn_volume_convert(&desc, report, &error) != HEWN_OK)
         fail_msg("%s: %s", volume, error.message);
+    assert_true(report->extraction.below && report->iso_value == 0);
     hewn_model one, two;
     assert_int_equal(hewn_model_read(mesh, NULL, &one, &error), HEWN_OK);
     assert_int_equal(hewn_model_read(made, NULL, &two, &error), HEWN_OK);

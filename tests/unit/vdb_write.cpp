@@ -2,6 +2,10 @@
 
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/Composite.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <random>
 
 namespace
 {
@@ -46,5 +50,70 @@ void vdb_write(const char *path, const int32_t dims[3], const double *values, co
     grids[7]->setName("empty");
     openvdb::io::File file(path);
     file.write(grids);
+    file.close();
+}
+
+void vdb_write_spheres(const char *path, int count, const double centres[][3], double radius, bool half)
+{
+    openvdb::initialize();
+    openvdb::FloatGrid::Ptr all;
+    for (int n = 0; n < count; n++) {
+        const openvdb::Vec3f centre{openvdb::Vec3d(centres[n])};
+        auto one = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(float(radius), centre, 1.0F);
+        if (all)
+            openvdb::tools::csgUnion(*all, *one);
+        else
+            all = one;
+    }
+    all->setName("spheres");
+    all->setSaveFloatAsHalf(half);
+    openvdb::io::File file(path);
+    file.write({all});
+    file.close();
+}
+
+namespace
+{
+
+template <typename Grid>
+openvdb::GridBase::Ptr make_tree(uint64_t seed)
+{
+    std::mt19937_64 random(seed);
+    using Value = typename Grid::ValueType;
+    auto value = [&] { return Value(int64_t(random() % 2001) - 1000) / 1000; };
+    auto place = [&](int from, int to) { return from + int(random() % uint64_t(to - from)); };
+    auto grid = Grid::create(value());
+    auto &tree = grid->tree();
+    if (seed % 3 == 0)
+        tree.addTile(3, openvdb::Coord(place(-1, 1) * 4096, place(-1, 1) * 4096, 0), value(), false);
+    for (int n = 0; n < int(seed % 5); n++)
+        tree.addTile(2, openvdb::Coord(place(-2, 2) * 128, place(-2, 2) * 128, place(-1, 1) * 128), value(), false);
+    for (int n = 0; n < 40; n++)
+        tree.addTile(1, openvdb::Coord(place(-6, 6) * 8, place(-4, 4) * 8, place(-3, 3) * 8), value(),
+                     random() % 2 == 0);
+    for (int leaf = 0; leaf < 12; leaf++) {
+        const openvdb::Coord origin(place(-6, 6) * 8, place(-4, 4) * 8, place(-3, 3) * 8);
+        for (int n = 0; n < 512; n++)
+            if (random() % 3 > 0) {
+                const openvdb::Coord at = origin.offsetBy(n & 7, n >> 3 & 7, n >> 6);
+                if (random() % 2)
+                    tree.setValueOn(at, value());
+                else
+                    tree.setValueOff(at, value());
+            }
+    }
+    tree.setValueOn(openvdb::Coord(place(-60, -40), place(-40, 0), 3), value());
+    tree.setValueOn(openvdb::Coord(place(40, 60), place(0, 40), -3), value());
+    grid->setName("tree");
+    return grid;
+}
+
+} // namespace
+
+void vdb_write_tree(const char *path, uint64_t seed, bool doubles)
+{
+    openvdb::initialize();
+    openvdb::io::File file(path);
+    file.write({doubles ? make_tree<openvdb::DoubleGrid>(seed) : make_tree<openvdb::FloatGrid>(seed)});
     file.close();
 }

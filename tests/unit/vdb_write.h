@@ -16,6 +16,14 @@ extern "C" {
 void vdb_write(const char *path, const int32_t dims[3], const double *values, const int32_t first[3],
                const double to_world[16]);
 
+/* A file with the level set "spheres" (or, with `half`, kept as halves) of spheres of a radius about these centres, in
+ * voxels of 1. */
+void vdb_write_spheres(const char *path, int count, const double centres[][3], double radius, bool half);
+
+/* A file with the grid "tree" of floats (`doubles`: of doubles), whose leaves, tiles of all sizes, active and not, and
+ * background are random, with steps wherever they meet. Active samples lie within 300 of the origin. */
+void vdb_write_tree(const char *path, uint64_t seed, bool doubles);
+
 #ifdef __cplusplus
 }
 #endif

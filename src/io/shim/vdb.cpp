@@ -19,7 +19,9 @@
 struct hewn_vdb {
     virtual ~hewn_vdb() = default;
     virtual void copy_box(const openvdb::CoordBBox &box, void *out) const = 0;
-    virtual bool leaf(uint64_t index, int32_t origin[3], void *samples) const = 0;
+    virtual void leaf(uint64_t index, int32_t origin[3], void *samples) const = 0;
+    virtual void tile(uint64_t index, int32_t origin[3], uint32_t *side, void *sample) const = 0;
+    virtual void background(void *sample) const = 0;
     virtual void tell(hewn_vdb_facts *facts) const = 0;
 };
 
@@ -65,14 +67,46 @@ constexpr hewn_vdb_type type_of()
 template <typename Grid>
 class held_grid : public hewn_vdb
 {
-    using Leaf = typename Grid::TreeType::LeafNodeType;
+    using Tree = typename Grid::TreeType;
+    using Root = typename Tree::RootNodeType;
+    using Upper = typename Root::ChildNodeType;
+    using Lower = typename Upper::ChildNodeType;
+    using Leaf = typename Tree::LeafNodeType;
+    using Value = typename Grid::ValueType;
+    static_assert(Leaf::DIM == 8 && Lower::DIM == 128 && Upper::DIM == 4096);
+
+    struct constant_cube {
+        openvdb::Coord origin;
+        uint32_t side;
+        Value value;
+    };
     typename Grid::ConstPtr grid;
     std::vector<const Leaf *> leaves;
+    std::vector<constant_cube> tiles;
+
+    template <typename Node>
+    void list_tiles(const Node &node, uint32_t side)
+    {
+        for (auto at = node.cbeginValueAll(); at; ++at) {
+            const Value value = at.getValue();
+            if (std::memcmp(&value, &grid->background(), sizeof value) != 0)
+                tiles.push_back({at.getCoord(), side, value});
+        }
+    }
 
   public:
     explicit held_grid(typename Grid::ConstPtr from) : grid(std::move(from))
     {
+        std::vector<const Upper *> uppers;
+        std::vector<const Lower *> lowers;
         grid->tree().getNodes(leaves);
+        grid->tree().getNodes(uppers);
+        grid->tree().getNodes(lowers);
+        list_tiles(grid->tree().root(), Upper::DIM);
+        for (const Upper *node : uppers)
+            list_tiles(*node, Lower::DIM);
+        for (const Lower *node : lowers)
+            list_tiles(*node, Leaf::DIM);
     }
 
     void copy_box(const openvdb::CoordBBox &box, void *out) const override
@@ -82,16 +116,38 @@ class held_grid : public hewn_vdb
         openvdb::tools::copyToDense(grid->tree(), dense);
     }
 
-    bool leaf(uint64_t index, int32_t origin[3], void *samples) const override
+    void leaf(uint64_t index, int32_t origin[3], void *samples) const override
     {
-        const Leaf *node = leaves.at(index);
+        const Leaf *node = leaves[index];
+        auto *to = static_cast<Value *>(samples);
         for (int axis = 0; axis < 3; axis++)
             origin[axis] = node->origin()[axis];
-        if constexpr (std::is_same_v<typename Grid::ValueType, bool>)
-            return false;
-        else
-            std::memcpy(samples, node->buffer().data(), sizeof(typename Grid::ValueType) * HEWN_VDB_LEAF);
-        return true;
+        if (!samples)
+            return;
+        if constexpr (std::is_same_v<Value, bool>) {
+            for (openvdb::Index n = 0; n < HEWN_VDB_LEAF; n++)
+                to[n] = node->getValue((n & 7) << 6 | (n & 0x38) | n >> 6);
+        } else { /* OpenVDB has k fastest */
+            const Value *from = node->buffer().data();
+            for (unsigned y = 0; y < 8; y++)
+                for (unsigned z = 0; z < 8; z++)
+                    for (unsigned x = 0; x < 8; x++)
+                        to[64 * z + 8 * y + x] = from[64 * x + 8 * y + z];
+        }
+    }
+
+    void tile(uint64_t index, int32_t origin[3], uint32_t *side, void *sample) const override
+    {
+        const constant_cube &cube = tiles[index];
+        for (int axis = 0; axis < 3; axis++)
+            origin[axis] = cube.origin[axis];
+        *side = cube.side;
+        std::memcpy(sample, &cube.value, sizeof cube.value);
+    }
+
+    void background(void *sample) const override
+    {
+        std::memcpy(sample, &grid->background(), sizeof(Value));
     }
 
     void tell(hewn_vdb_facts *facts) const override
@@ -101,8 +157,8 @@ class held_grid : public hewn_vdb
         std::snprintf(facts->name, sizeof facts->name, "%s", grid->getName().c_str());
         facts->type = type_of<Grid>();
         facts->level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
-        facts->background = double(grid->background());
         facts->leaf_count = leaves.size();
+        facts->tile_count = tiles.size();
         for (int row = 0; row < 4; row++)
             for (int column = 0; column < 4; column++)
                 facts->to_world[4 * row + column] = matrix(column, row); /* OpenVDB multiplies rows from the left */
@@ -213,11 +269,19 @@ try {
     return HEWN_VDB_BAD;
 }
 
-bool copy_leaf(const hewn_vdb *grid, uint64_t index, int32_t origin[3], void *samples)
-try {
-    return grid->leaf(index, origin, samples);
-} catch (...) {
-    return false;
+void copy_leaf(const hewn_vdb *grid, uint64_t index, int32_t origin[3], void *samples)
+{
+    grid->leaf(index, origin, samples);
+}
+
+void copy_tile(const hewn_vdb *grid, uint64_t index, int32_t origin[3], uint32_t *side, void *sample)
+{
+    grid->tile(index, origin, side, sample);
+}
+
+void copy_background(const hewn_vdb *grid, void *sample)
+{
+    grid->background(sample);
 }
 
 /* A stream that hands its bytes on. */
@@ -294,4 +358,5 @@ try {
 
 /* io/shim/module.h looks for this name. */
 extern "C" __attribute__((visibility("default"))) const hewn_vdb_module hewn_module_table;
-const hewn_vdb_module hewn_module_table = {open_grid, close_grid, copy_box, copy_leaf, write_level_set};
+const hewn_vdb_module hewn_module_table = {open_grid, close_grid,      copy_box,       copy_leaf,
+                                           copy_tile, copy_background, write_level_set};

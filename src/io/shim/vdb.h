@@ -30,8 +30,8 @@ typedef struct hewn_vdb_facts {
     bool level_set;       /* signed distances, negative inside */
     int32_t lo[3], hi[3]; /* the box of its active samples, both ends included */
     double to_world[16];  /* of (i, j, k, 1), row-major */
-    double background;
     uint64_t leaf_count;
+    uint64_t tile_count; /* constant cubes that are not background */
 } hewn_vdb_facts;
 
 /* One grid of a file, in memory. May be read by several threads at once. */
@@ -65,11 +65,15 @@ typedef struct hewn_vdb_module {
     hewn_vdb_result (*copy_box)(const hewn_vdb *grid, const int32_t lo[3], const int32_t hi[3], void *out);
 
     /* Leaf `index` of `leaf_count`, in OpenVDB's order, which depends on the file alone: where its first sample is, and
-     * its samples, that at (x, y, z) from there being number 64 x + 8 y + z, in the grid's type. Leaves hold all
-     * samples of a level set's narrow band, so its surface crosses edges of samples of leaves only; the sample past a
-     * leaf's last is in its neighbour, or background (negative inside of a level set). For a way that makes no grid
-     * dense. False for a grid of bool, which has no samples as such. */
-    bool (*leaf)(const hewn_vdb *grid, uint64_t index, int32_t origin[3], void *samples);
+     * (unless NULL) its samples in the grid's type (a bool is a byte of 0 or 1), i fastest, active or not. */
+    void (*leaf)(const hewn_vdb *grid, uint64_t index, int32_t origin[3], void *samples);
+
+    /* Tile `index` of `tile_count`, larger ones first: a cube of 8, 128 or 4096 samples along its side that all have
+     * one value, of the grid's type, which is not the background's. What is in no leaf and no tile is background. */
+    void (*tile)(const hewn_vdb *grid, uint64_t index, int32_t origin[3], uint32_t *side, void *sample);
+
+    /* The background as a sample. */
+    void (*background)(const hewn_vdb *grid, void *sample);
 
     /* Writes a file of one grid of floats. A message of at most `room` bytes says why that failed. */
     hewn_vdb_result (*write)(const hewn_vdb_level_set *what, char *message, size_t room);

@@ -2,10 +2,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/pidfd.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -84,16 +86,25 @@ static void copy_text(char out[256], const char *text)
     snprintf(out, 256, "%s", text ? text : "");
 }
 
+static uint64_t bytes_of(const hewn_volume *volume)
+{
+    if (volume->blocks)
+        return volume->memory_length;
+    return hewn_volume_frame_size(volume) * volume->frame_count * hewn_voxel_size(volume->type);
+}
+
 /* Sends the reply, and the samples unless the reader wrote them into the shared file itself. */
 static bool send(const hewn_apart *job, int file, const reply *answer)
 {
     char page[SAMPLES_AT] = {0};
     memcpy(page, answer, sizeof *answer);
     if (job->source && answer->result == HEWN_OK && answer->volume.mapped &&
-        answer->volume.samples == answer->volume.memory && answer->volume.memory_length == answer->sample_bytes)
+        (answer->volume.blocks || answer->volume.samples == answer->volume.memory) &&
+        answer->volume.memory_length == answer->sample_bytes)
         return pwrite(file, page, sizeof page, 0) == (ssize_t)sizeof page;
     return ftruncate(file, 0) == 0 && write_all(file, page, sizeof page) &&
-           write_all(file, answer->volume.samples, answer->sample_bytes);
+           write_all(file, answer->volume.blocks ? answer->volume.memory : answer->volume.samples,
+                     answer->sample_bytes);
 }
 
 static bool work(const hewn_apart *job, int file)
@@ -117,8 +128,7 @@ static bool work(const hewn_apart *job, int file)
     }
     answer.result = job->read(job, &desc, &answer.volume, &answer.error);
     if (answer.result == HEWN_OK)
-        answer.sample_bytes =
-            hewn_volume_frame_size(&answer.volume) * answer.volume.frame_count * hewn_voxel_size(answer.volume.type);
+        answer.sample_bytes = bytes_of(&answer.volume);
     copy_text(answer.name, answer.volume.name);
     copy_text(answer.remark, answer.volume.remark);
     return send(job, file, &answer);
@@ -126,8 +136,21 @@ static bool work(const hewn_apart *job, int file)
 
 /* --- in this one -------------------------------------------------------------------------------------------------- */
 
+/* Sleeps until the process ends, or it is time to report again. */
+static void wait_a_while(int handle, struct timespec *pause)
+{
+    enum { LONGEST = 20000000 }; /* ns */
+    struct pollfd ends = {.fd = handle, .events = POLLIN};
+    if (handle >= 0) {
+        (void)poll(&ends, 1, LONGEST / 1000000);
+        return;
+    }
+    nanosleep(pause, NULL); /* nobody tells when: look more and more seldom */
+    pause->tv_nsec = pause->tv_nsec < LONGEST ? 2 * pause->tv_nsec : pause->tv_nsec;
+}
+
 /* Waits for the other process; a callback that says no ends it. */
-static hewn_result wait_for(const hewn_apart *job, pid_t child, int *status, hewn_error *error)
+static hewn_result wait_for(const hewn_apart *job, pid_t child, int handle, int *status, hewn_error *error)
 {
     struct timespec pause = {0, 200000}; /* 0.2 ms at first, then longer */
     for (;;) {
@@ -142,8 +165,7 @@ static hewn_result wait_for(const hewn_apart *job, pid_t child, int *status, hew
             return HEWN_OK;
         if (ended < 0 && errno != EINTR)
             return hewn_fail_at(error, HEWN_IO, job->name, 0, "the process that reads it is lost");
-        nanosleep(&pause, NULL);
-        pause.tv_nsec = pause.tv_nsec < 20000000 ? 2 * pause.tv_nsec : pause.tv_nsec;
+        wait_a_while(handle, &pause);
     }
 }
 
@@ -170,7 +192,8 @@ static hewn_result take_reply(const hewn_apart *job, int file, hewn_volume *out,
     out->memory = block;
     out->memory_length = (size_t)length;
     out->mapped = true;
-    out->samples = (const char *)block + SAMPLES_AT;
+    out->samples = out->blocks ? NULL : (const char *)block + SAMPLES_AT;
+    out->blocks = out->blocks ? (const void *)((const char *)block + SAMPLES_AT) : NULL;
     return HEWN_OK;
 }
 
@@ -182,7 +205,11 @@ static hewn_result run(const hewn_apart *job, int file, hewn_volume *out, hewn_e
         return hewn_fail_at(error, HEWN_IO, job->name, 0, "no process can be made to read it");
     if (child == 0)
         _exit(work(job, file) ? 0 : 1);
-    HEWN_TRY(wait_for(job, child, &status, error));
+    int handle = pidfd_open(child, 0);
+    hewn_result waited = wait_for(job, child, handle, &status, error);
+    if (handle >= 0)
+        close(handle);
+    HEWN_TRY(waited);
     if (!WIFEXITED(status))
         return hewn_fail_at(
             error, HEWN_BAD_INPUT, job->name, 0,

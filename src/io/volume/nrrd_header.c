@@ -390,7 +390,13 @@ static const struct {
               {"data file", read_data_file},
               {"datafile", read_data_file}};
 
-/* Fields that nobody needs here, and keys with values ("key:=value"), are passed over. */
+/* "key:=value": whoever writes a file makes them up. One is ours. */
+static void read_key(hewn_word key, hewn_nrrd_header *header)
+{
+    header->level_set = header->level_set || hewn_word_is_any_case(key, HEWN_NRRD_LEVEL_SET);
+}
+
+/* Fields that nobody needs here, and other keys, are passed over. */
 static hewn_result read_line(nrrd_line *line, hewn_error *error)
 {
     const char *at = line->value.at, *end = line->value.end;
@@ -399,8 +405,10 @@ static hewn_result read_line(nrrd_line *line, hewn_error *error)
     const char *colon = memchr(at, ':', (size_t)(end - at));
     if (!colon)
         return hewn_scan_fail(&line->value, (hewn_word){at, end}, "expected \"field: value\"", error);
-    if (colon + 1 < end && colon[1] == '=')
+    if (colon + 1 < end && colon[1] == '=') {
+        read_key((hewn_word){at, colon}, line->header);
         return HEWN_OK;
+    }
     line->field = (hewn_word){at, colon};
     line->value.at = colon + 1;
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)

@@ -7,6 +7,9 @@
 
 enum { HEWN_NRRD_AXES = 16, HEWN_NRRD_SPACE = 4 };
 
+/* The key that says of a file that its samples are distances, negative inside. The format has no field for that. */
+#define HEWN_NRRD_LEVEL_SET "level set"
+
 typedef enum hewn_nrrd_encoding {
     HEWN_NRRD_RAW,
     HEWN_NRRD_TEXT,
@@ -34,6 +37,7 @@ typedef struct hewn_nrrd_header {
     bool anatomical, left, posterior;
     double origin[HEWN_NRRD_SPACE];
     hewn_word unit; /* of all spatial axes */
+    bool level_set; /* by HEWN_NRRD_LEVEL_SET */
     bool has_type, has_encoding, has_endian, big_endian;
     hewn_nrrd_encoding encoding;
     int64_t line_skip, byte_skip; /* byte_skip -1: samples end with the file */

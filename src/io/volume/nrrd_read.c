@@ -184,6 +184,7 @@ hewn_result hewn_nrrd_read(hewn_volume_source *source, hewn_volume *out, hewn_er
     HEWN_TRY(set_axes(source, &header, axes, &volume, error));
     volume.type = header.type;
     volume.anatomical = header.anatomical;
+    volume.level_set = header.level_set;
     volume.unit = unit_of(header.unit);
     hewn_volume_turn_world(&volume, header.left, header.posterior);
     HEWN_TRY(hewn_volume_head_check(source, &volume, NULL, error));

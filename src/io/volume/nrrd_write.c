@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "io/volume/nrrd_header.h"
 #include "io/volume/sampling_write.h"
 
 enum { BRICK = HEWN_SAMPLING_BRICK, SIDE = HEWN_SAMPLING_SIDE, PACKED = 1 << 18 };
@@ -33,7 +34,8 @@ static hewn_result write_head(hewn_sampling_writing *job, hewn_error *error)
     if (job->unit)
         hewn_text_print(&text, "space units: \"%s\" \"%s\" \"%s\"\n", job->unit->name, job->unit->name,
                         job->unit->name);
-    hewn_text_print(&text, "endian: %s\nencoding: gzip\n\n", *(const char *)&one ? "little" : "big");
+    hewn_text_print(&text, "endian: %s\nencoding: gzip\n" HEWN_NRRD_LEVEL_SET ":=signed distances, negative inside\n\n",
+                    *(const char *)&one ? "little" : "big");
     hewn_result result = hewn_text_status(&text, error);
     if (result == HEWN_OK)
         result = put(job, text.bytes, text.length, error);

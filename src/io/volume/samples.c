@@ -70,9 +70,8 @@ static void *map_room(int file, size_t bytes)
     return block == MAP_FAILED ? NULL : block;
 }
 
-hewn_result hewn_volume_make_room(const hewn_volume_source *source, hewn_volume *volume, hewn_error *error)
+static hewn_result make_room(const hewn_volume_source *source, size_t bytes, hewn_volume *volume, hewn_error *error)
 {
-    size_t bytes = sample_bytes(volume);
     if (bytes > hewn_volume_limit(source))
         return too_large(source, bytes, error);
     volume->mapped = source->room_file > 0;
@@ -81,7 +80,21 @@ hewn_result hewn_volume_make_room(const hewn_volume_source *source, hewn_volume 
         return hewn_fail_at(error, HEWN_OUT_OF_MEMORY, source->name, 0, "out of memory for %zu bytes of samples",
                             bytes);
     volume->memory_length = bytes;
+    return HEWN_OK;
+}
+
+hewn_result hewn_volume_make_room(const hewn_volume_source *source, hewn_volume *volume, hewn_error *error)
+{
+    HEWN_TRY(make_room(source, sample_bytes(volume), volume, error));
     volume->samples = volume->memory;
+    return HEWN_OK;
+}
+
+hewn_result hewn_volume_make_blocks_room(const hewn_volume_source *source, uint64_t bytes, hewn_volume *volume,
+                                         hewn_error *error)
+{
+    HEWN_TRY(make_room(source, bytes, volume, error));
+    volume->blocks = volume->memory;
     return HEWN_OK;
 }
 

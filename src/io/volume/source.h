@@ -51,6 +51,10 @@ hewn_result hewn_volume_head_check(const hewn_volume_source *source, const hewn_
  * HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_volume_make_room(const hewn_volume_source *source, hewn_volume *volume, hewn_error *error);
 
+/* Room for so many bytes in the same way, for a volume in blocks, which are to be made in `volume->memory`. */
+hewn_result hewn_volume_make_blocks_room(const hewn_volume_source *source, uint64_t bytes, hewn_volume *volume,
+                                         hewn_error *error);
+
 /* The samples of a checked head stand in the source as they are, from `offset` on: left there where that can be, else
  * copied. HEWN_BAD_INPUT where there are fewer bytes than the head tells. */
 hewn_result hewn_volume_take_samples(hewn_volume_source *source, uint64_t offset, bool big_endian, hewn_volume *volume,

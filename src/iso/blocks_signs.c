@@ -1,0 +1,354 @@
+/* Which samples of blocks are inside, and which blocks the surface passes. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/alloc.h"
+#include "base/error.h"
+#include "iso/lattice_blocks.h"
+
+/* More blocks than this have more vertices than indices can name, or rows than memory can hold. */
+enum { MOST_BLOCKS = 1 << 26 };
+
+static const uint64_t COLUMN = 0x0101010101010101u; /* bit 0 of each row of a slice */
+
+/* --- signs -------------------------------------------------------------------------------------------------------- */
+
+/* A bit for each of the eight places from 8 * `block` on that is at least `begin` and before `end`. */
+static uint32_t within(uint32_t block, uint32_t begin, uint32_t end)
+{
+    const uint32_t first = HEWN_BLOCK * block;
+    uint32_t bits = 0;
+    for (uint32_t i = 0; i < HEWN_BLOCK; i++)
+        bits |= (uint32_t)(first + i >= begin && first + i < end) << i;
+    return bits;
+}
+
+/* A row of bits for each bit. */
+static uint64_t spread_rows(uint32_t bits)
+{
+    uint64_t rows = 0;
+    for (uint32_t j = 0; j < HEWN_BLOCK; j++)
+        rows |= (bits >> j & 1 ? (uint64_t)0xFF : 0) << HEWN_BLOCK * j;
+    return rows;
+}
+
+/* Takes out what is not in the volume. */
+static void clip(const hewn_volume *volume, const uint32_t place[3], hewn_block_bits bits)
+{
+    uint32_t in[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const uint32_t lead = volume->blocks->lead[axis];
+        in[axis] = within(place[axis], lead, lead + volume->dims[axis]);
+    }
+    if ((in[0] & in[1] & in[2]) == 0xFF)
+        return;
+    for (uint32_t z = 0; z < HEWN_BLOCK; z++)
+        bits[z] &= in[2] >> z & 1 ? in[0] * COLUMN & spread_rows(in[1]) : 0;
+}
+
+static void find_signs(const hewn_lattice *lattice, hewn_lattice_blocks *out)
+{
+    const hewn_volume *volume = lattice->volume;
+    const hewn_blocks *blocks = volume->blocks;
+    const uint32_t *places = HEWN_BLOCKS_ARRAY(blocks, uint32_t, places);
+    hewn_volume constants = *volume, samples = *volume;
+    constants.samples = HEWN_BLOCKS_ARRAY(blocks, char, constants);
+    samples.samples = HEWN_BLOCKS_ARRAY(blocks, char, samples);
+    hewn_threshold_apply(&lattice->threshold, &constants, 0, blocks->constant_count, out->constants);
+#pragma omp parallel for schedule(static) if (blocks->block_count > 64)
+    for (uint64_t block = 0; block < blocks->block_count; block++) {
+        uint8_t bytes[HEWN_BLOCK_SAMPLES];
+        hewn_threshold_apply(&lattice->threshold, &samples, HEWN_BLOCK_SAMPLES * block, HEWN_BLOCK_SAMPLES, bytes);
+        for (uint32_t z = 0; z < HEWN_BLOCK; z++)
+            out->inside[block][z] = hewn_threshold_pack(bytes + (size_t)64 * z);
+        clip(volume, places + 3 * block, out->inside[block]);
+    }
+}
+
+/* The signs of the block at a place. */
+static void find_bits(const hewn_lattice *lattice, uint32_t x, uint32_t y, uint32_t z, uint32_t slices, uint64_t *out)
+{
+    const hewn_lattice_blocks *own = lattice->blocks;
+    const uint32_t entry = hewn_blocks_find(lattice->volume->blocks, x, y, z);
+    const uint32_t place[3] = {x, y, z};
+    if (hewn_entry_leads_on(entry)) {
+        memcpy(out, own->inside[entry >> 1], slices * sizeof *out);
+        return;
+    }
+    hewn_block_bits all;
+    memset(all, own->constants[entry >> 1] ? 0xFF : 0, sizeof all);
+    if (own->constants[entry >> 1])
+        clip(lattice->volume, place, all);
+    memcpy(out, all, slices * sizeof *out);
+}
+
+void hewn_block_signs_load(const hewn_lattice *lattice, const uint32_t place[3], hewn_block_signs *out)
+{
+    enum { SLICES = HEWN_BLOCK + 1 };
+    uint64_t of[4][SLICES]; /* blocks at i, i + 1, and these at j + 1 */
+    const uint32_t x = place[0], y = place[1], z = place[2];
+    for (uint32_t n = 0; n < 4; n++) {
+        find_bits(lattice, x + (n & 1), y + (n >> 1), z, HEWN_BLOCK, of[n]);
+        find_bits(lattice, x + (n & 1), y + (n >> 1), z + 1, 1, of[n] + HEWN_BLOCK);
+    }
+    for (uint32_t k = 0; k < SLICES; k++) {
+        const uint64_t low = COLUMN * 0x7F;
+        out->here[k] = of[0][k];
+        out->next_i[k] = (of[0][k] >> 1 & low) | (of[1][k] & COLUMN) << 7;
+        out->next_j[k] = of[0][k] >> HEWN_BLOCK | of[2][k] << 7 * HEWN_BLOCK;
+        const uint64_t ahead = (of[2][k] >> 1 & low) | (of[3][k] & COLUMN) << 7;
+        out->next_ij[k] = out->next_i[k] >> HEWN_BLOCK | ahead << 7 * HEWN_BLOCK;
+    }
+    uint32_t may[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const uint32_t begin = lattice->volume->blocks->lead[axis] - lattice->rim;
+        may[axis] = within(place[axis], begin, begin + lattice->dims[axis] - 1);
+    }
+    out->may_i = may[0] * COLUMN;
+    out->may_j = spread_rows(may[1]);
+    out->may_k = may[2];
+}
+
+/* --- the surface -------------------------------------------------------------------------------------------------- */
+
+/* What is known of a cube of samples: all outside, all inside, or not known to be one of these. */
+enum { OUT, IN, MIXED };
+
+typedef struct block_list {
+    uint64_t *keys;
+    uint64_t count;
+    size_t room;
+    bool failed;
+} block_list;
+
+typedef struct block_search {
+    const hewn_lattice *lattice;
+    uint64_t along, across; /* keys of neighbours along j and k differ by these */
+    uint32_t (*cubes)[3];   /* of 128, that may have surface */
+    size_t cube_count, cube_room;
+} block_search;
+
+static uint32_t state_of_block(const hewn_block_bits bits)
+{
+    uint64_t any = 0, all = ~(uint64_t)0;
+    for (uint32_t z = 0; z < HEWN_BLOCK; z++) {
+        any |= bits[z];
+        all &= bits[z];
+    }
+    return any == 0 ? OUT : all == ~(uint64_t)0 ? IN : MIXED;
+}
+
+/* What is outside of the volume is outside. */
+static uint32_t state_of(const hewn_lattice *lattice, uint32_t side, const uint32_t at[3])
+{
+    const hewn_blocks *blocks = lattice->volume->blocks;
+    bool whole = true;
+    for (int axis = 0; axis < 3; axis++) {
+        const uint64_t begin = (uint64_t)at[axis] * side, end = begin + side, lead = blocks->lead[axis];
+        if (end <= lead || begin >= lead + lattice->volume->dims[axis])
+            return OUT;
+        whole = whole && begin >= lead && end <= lead + lattice->volume->dims[axis];
+    }
+    const uint32_t entry = side == HEWN_UPPER_SPAN   ? hewn_blocks_root(blocks, at[0], at[1], at[2])
+                           : side == HEWN_LOWER_SPAN ? hewn_blocks_upper(blocks, at[0], at[1], at[2])
+                                                     : hewn_blocks_find(blocks, at[0], at[1], at[2]);
+    if (hewn_entry_leads_on(entry))
+        return side == HEWN_BLOCK ? state_of_block(lattice->blocks->inside[entry >> 1]) : MIXED;
+    if (!lattice->blocks->constants[entry >> 1])
+        return OUT;
+    return whole ? IN : MIXED;
+}
+
+/* Whether cells that begin in a cube may hold surface, and in which of its parts: `*state` is its own. */
+static bool may_have_surface(const hewn_lattice *lattice, uint32_t side, const uint32_t at[3], uint32_t *state)
+{
+    *state = state_of(lattice, side, at);
+    bool may = *state == MIXED;
+    for (uint32_t n = 1; n < 8 && !may; n++) {
+        const uint32_t next[3] = {at[0] + (n & 1), at[1] + (n >> 1 & 1), at[2] + (n >> 2)};
+        may = state_of(lattice, side, next) != *state;
+    }
+    return may;
+}
+
+static void add_block(const block_search *search, const uint32_t place[3], block_list *out)
+{
+    hewn_block_signs signs;
+    uint64_t any = 0;
+    hewn_block_signs_load(search->lattice, place, &signs);
+    for (uint32_t z = 0; z < HEWN_BLOCK; z++)
+        any |= hewn_block_crossed(&signs, 0, z) | hewn_block_crossed(&signs, 1, z) | hewn_block_crossed(&signs, 2, z) |
+               hewn_block_active(&signs, z);
+    if (!any || out->failed)
+        return;
+    out->failed = out->count > MOST_BLOCKS ||
+                  hewn_reserve((void **)&out->keys, &out->room, out->count + 1, sizeof *out->keys, NULL) != HEWN_OK;
+    if (!out->failed)
+        out->keys[out->count++] = place[0] + search->along * place[1] + search->across * place[2];
+}
+
+/* The parts of a cube that may have surface. One that is all in or out itself has it only at its far sides. */
+static void next_part(uint32_t state, uint32_t parts, uint32_t *part)
+{
+    const uint32_t x = *part % parts, y = *part / parts % parts, z = *part / parts / parts;
+    const bool inner = state != MIXED && x < parts - 1 && y < parts - 1 && z < parts - 1;
+    if (inner)
+        *part += parts - 1 - x;
+}
+
+static void search_cube(const block_search *search, const uint32_t cube[3], block_list *out)
+{
+    uint32_t state, own;
+    (void)may_have_surface(search->lattice, HEWN_LOWER_SPAN, cube, &state);
+    for (uint32_t part = 0; part < HEWN_LOWER_ENTRIES; part++) {
+        next_part(state, HEWN_LOWER, &part);
+        const uint32_t at[3] = {HEWN_LOWER * cube[0] + part % HEWN_LOWER,
+                                HEWN_LOWER * cube[1] + part / HEWN_LOWER % HEWN_LOWER,
+                                HEWN_LOWER * cube[2] + part / HEWN_LOWER / HEWN_LOWER};
+        if (may_have_surface(search->lattice, HEWN_BLOCK, at, &own))
+            add_block(search, at, out);
+    }
+}
+
+static hewn_result list_cubes(block_search *search, hewn_error *error)
+{
+    const uint32_t *roots = search->lattice->volume->blocks->roots;
+    for (uint64_t root = 0; root < (uint64_t)roots[0] * roots[1] * roots[2]; root++) {
+        const uint32_t whole[3] = {(uint32_t)(root % roots[0]), (uint32_t)(root / roots[0] % roots[1]),
+                                   (uint32_t)(root / roots[0] / roots[1])};
+        uint32_t state, own;
+        if (!may_have_surface(search->lattice, HEWN_UPPER_SPAN, whole, &state))
+            continue;
+        for (uint32_t part = 0; part < HEWN_UPPER_ENTRIES; part++) {
+            next_part(state, HEWN_UPPER, &part);
+            const uint32_t at[3] = {HEWN_UPPER * whole[0] + part % HEWN_UPPER,
+                                    HEWN_UPPER * whole[1] + part / HEWN_UPPER % HEWN_UPPER,
+                                    HEWN_UPPER * whole[2] + part / HEWN_UPPER / HEWN_UPPER};
+            if (!may_have_surface(search->lattice, HEWN_LOWER_SPAN, at, &own))
+                continue;
+            HEWN_TRY(hewn_reserve((void **)&search->cubes, &search->cube_room, search->cube_count + 1,
+                                  sizeof *search->cubes, error));
+            memcpy(search->cubes[search->cube_count++], at, sizeof at);
+        }
+    }
+    return HEWN_OK;
+}
+
+/* --- their order -------------------------------------------------------------------------------------------------- */
+
+static int by_key(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+static hewn_result join(block_list *all, block_list *own, hewn_error *error)
+{
+    if (own->failed || all->count + own->count > MOST_BLOCKS)
+        return hewn_fail(error, HEWN_LIMIT,
+                         "the surface passes more than %d blocks of 8 x 8 x 8 samples, or memory is short",
+                         MOST_BLOCKS);
+    HEWN_TRY(hewn_reserve((void **)&all->keys, &all->room, all->count + own->count, sizeof *all->keys, error));
+    memcpy(all->keys + all->count, own->keys, own->count * sizeof *own->keys);
+    all->count += own->count;
+    return HEWN_OK;
+}
+
+static hewn_result search_all(const block_search *search, block_list *out, hewn_error *error)
+{
+    hewn_result result = HEWN_OK;
+#pragma omp parallel if (search->cube_count > 1)
+    {
+        block_list own = {0};
+#pragma omp for schedule(dynamic)
+        for (uint64_t n = 0; n < search->cube_count; n++)
+            search_cube(search, search->cubes[n], &own);
+#pragma omp critical(hewn_lattice_blocks)
+        if (result == HEWN_OK && (own.count > 0 || own.failed))
+            result = join(out, &own, error);
+        hewn_free(own.keys);
+    }
+    if (out->count > 1)
+        qsort(out->keys, out->count, sizeof *out->keys, by_key);
+    return result;
+}
+
+/* Keys that are looked for rise as those of the blocks do. */
+static hewn_result set_surface(const block_search *search, const block_list *found, hewn_lattice_blocks *out,
+                               hewn_error *error)
+{
+    const uint64_t steps[3] = {search->along, search->across, search->along + search->across};
+    uint32_t ahead[3] = {0};
+    out->count = found->count;
+    out->surface = hewn_alloc(found->count, sizeof *out->surface);
+    if (!out->surface)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the blocks of a surface");
+    for (uint64_t n = 0; n < found->count; n++) {
+        const uint64_t key = found->keys[n];
+        hewn_lattice_block *block = &out->surface[n];
+        block->place[0] = (uint32_t)(key % search->across % search->along);
+        block->place[1] = (uint32_t)(key % search->across / search->along);
+        block->place[2] = (uint32_t)(key / search->across);
+        for (int i = 0; i < 3; i++) {
+            while (ahead[i] < found->count && found->keys[ahead[i]] < key + steps[i])
+                ahead[i]++;
+            block->ahead[i] = ahead[i];
+        }
+    }
+    return HEWN_OK;
+}
+
+static hewn_result find_surface(const hewn_lattice *lattice, hewn_lattice_blocks *out, hewn_error *error)
+{
+    const uint32_t *roots = lattice->volume->blocks->roots;
+    const uint64_t side = HEWN_UPPER_SPAN / HEWN_BLOCK;
+    block_search search = {.lattice = lattice, .along = side * roots[0] + 1};
+    block_list found = {0};
+    search.across = search.along * (side * roots[1] + 1);
+    hewn_result result = list_cubes(&search, error);
+    if (result == HEWN_OK)
+        result = search_all(&search, &found, error);
+    if (result == HEWN_OK)
+        result = set_surface(&search, &found, out, error);
+    hewn_free(search.cubes);
+    hewn_free(found.keys);
+    return result;
+}
+
+/* --- the whole ---------------------------------------------------------------------------------------------------- */
+
+hewn_result hewn_lattice_blocks_create(hewn_lattice *lattice, hewn_error *error)
+{
+    const hewn_blocks *blocks = lattice->volume->blocks;
+    hewn_lattice_blocks *own = hewn_alloc_zero(1, sizeof *own);
+    lattice->blocks = own;
+    if (own) {
+        own->inside = hewn_alloc(blocks->block_count, sizeof *own->inside);
+        own->constants = hewn_alloc(blocks->constant_count, 1);
+    }
+    if (!own || !own->inside || !own->constants)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the signs of %llu blocks",
+                         (unsigned long long)blocks->block_count);
+    find_signs(lattice, own);
+    return find_surface(lattice, own, error);
+}
+
+void hewn_lattice_blocks_destroy(hewn_lattice *lattice)
+{
+    hewn_lattice_blocks *own = lattice->blocks;
+    if (!own)
+        return;
+    hewn_free(own->inside);
+    hewn_free(own->constants);
+    hewn_free(own->surface);
+    hewn_free(own->rows);
+    hewn_free(own);
+    lattice->blocks = NULL;
+}
+
+uint64_t hewn_lattice_blocks_bytes(const hewn_lattice *lattice)
+{
+    const hewn_lattice_blocks *own = lattice->blocks;
+    return own->count * sizeof *own->surface + lattice->volume->blocks->block_count * sizeof *own->inside +
+           lattice->volume->blocks->constant_count;
+}
