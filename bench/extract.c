@@ -1,5 +1,5 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process. usage: extract [--runs N] [--res N] [--peers 0] [--as listed|straight] [--json FILE] [SCENE ...], SCENE one
+ * process. usage: extract [--runs N] [--res N] [--peers 0] [--dual 0] [--as listed|straight] [--json FILE] [SCENE ...], SCENE one
  * of csg, gyroid, menger, random, random100, random10000. */
 #include <math.h>
 #include <stdio.h>
@@ -17,6 +17,9 @@
 #include "iso/extractor.h"
 
 #define THREADS 2
+
+enum { STAGES = 5 };
+static const char *const stage_names[STAGES] = {"cull", "evaluate", "extract", "suspects", "read_back"};
 
 typedef struct contest {
     const char *name;
@@ -47,7 +50,7 @@ typedef struct outcome {
     double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];
     double hewn_processor[MOST_RUNS], peer_processor[MOST_RUNS]; /* both cores together: other processes do not count */
     double dual[MOST_RUNS]; /* Hewn by dual contouring, which peers here do not have */
-    double stage[4];
+    double stage[STAGES]; /* processor seconds of the last run */
     double first; /* compiling and the first run */
     bool listed;
     uint64_t hewn_triangles, peer_triangles;
@@ -55,7 +58,7 @@ typedef struct outcome {
 
 typedef struct manner {
     hewn_evaluation evaluation;
-    bool peers;
+    bool peers, dual;
 } manner;
 
 static double processor_seconds(void)
@@ -74,23 +77,40 @@ static void stop_on(hewn_result result, const hewn_error *error)
     exit(1);
 }
 
+/* Charges what the processors did since the last call to the stage that has ended. */
+typedef struct meter {
+    double last;
+    double *stage;
+} meter;
+
+static bool charge(void *user, const char *stage, double fraction)
+{
+    meter *to = user;
+    double now = processor_seconds();
+    (void)fraction;
+    for (int k = 0; k < STAGES; k++)
+        if (strcmp(stage, stage_names[k]) == 0)
+            to->stage[k] = now - to->last;
+    to->last = now;
+    return true;
+}
+
 /* Seconds of an extraction; what `out` says of Hewn is from marching cubes, as flying edges is that too. */
 static void run_hewn(hewn_extractor *extractor, const hewn_box *bounds, uint32_t resolution, hewn_method method,
                      double *seconds, outcome *out)
 {
-    static const char *const stages[4] = {"cull", "evaluate", "extract", "read_back"};
     hewn_error error = {0};
-    hewn_extract_desc desc = {.bounds = *bounds, .resolution = resolution, .method = method};
+    bool cubes = method == HEWN_METHOD_MARCHING_CUBES;
+    double unused[STAGES];
+    meter processors = {processor_seconds(), cubes ? out->stage : unused};
+    hewn_progress progress = {.report = charge, .user = &processors};
+    hewn_extract_desc desc = {.bounds = *bounds, .resolution = resolution, .method = method, .progress = &progress};
     hewn_triangles triangles;
     hewn_extract_stats stats;
     double begin = hewn_clock_now();
     stop_on(hewn_extract(extractor, &desc, &triangles, &stats, &error), &error);
     *seconds = hewn_clock_now() - begin;
-    for (uint32_t i = 0; method == HEWN_METHOD_MARCHING_CUBES && i < stats.stage_count; i++)
-        for (int k = 0; k < 4; k++)
-            if (strcmp(stats.stages[i].name, stages[k]) == 0)
-                out->stage[k] = stats.stages[i].end - stats.stages[i].begin;
-    if (method == HEWN_METHOD_MARCHING_CUBES)
+    if (cubes)
         out->hewn_triangles = triangles.triangle_count;
     hewn_triangles_destroy(&triangles);
 }
@@ -152,7 +172,8 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
     double unused[2];
     run_hewn(extractor, &bounds, resolution, HEWN_METHOD_MARCHING_CUBES, unused, out);
     out->first = hewn_clock_now() - compile;
-    run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, unused, out);
+    if (how->dual)
+        run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, unused, out);
     if (peers && entry->dense)
         run_peers(&subject, resolution, values, unused, unused + 1, out);
     for (int i = 0; i < runs; i++) {
@@ -163,7 +184,8 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
             run_peers(&subject, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
         out->hewn_processor[i] = between - begin;
         out->peer_processor[i] = processor_seconds() - between;
-        run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, &out->dual[i], out);
+        if (how->dual)
+            run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, &out->dual[i], out);
     }
     free((void *)subject.heap);
     free(values);
@@ -194,13 +216,13 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
     double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
     double dual = bench_median(result->dual, runs);
     double processor = bench_median(result->hewn_processor, runs), by_processor = processor_ratio(result, runs);
-    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   cpu %7.3f %6.2fx   dc %8.3f   %9llu %9llu   cull "
-           "%.3f, evaluate %.3f, "
-           "extract %.3f, read back %.3f\n",
+    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   cpu %7.3f %6.2fx   dc %8.3f   %9llu %9llu   cpu:",
            entry->name, resolution, result->listed ? "lists" : "straight", result->first, ours, sampling, meshing,
            ratio, processor, by_processor, dual, (unsigned long long)result->hewn_triangles,
-           (unsigned long long)result->peer_triangles, result->stage[0], result->stage[1], result->stage[2],
-           result->stage[3]);
+           (unsigned long long)result->peer_triangles);
+    for (int k = 0; k < STAGES; k++)
+        printf(" %s %.3f", stage_names[k], result->stage[k]);
+    printf("\n");
     if (json)
         fprintf(json,
                 "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
@@ -226,7 +248,7 @@ int main(int argc, char **argv)
     const char *folder = getenv("HEWN_SCENES");
     int runs = 5, at = 1;
     uint32_t wanted_resolution = 0;
-    manner how = {HEWN_EVALUATION_AUTO, true};
+    manner how = {HEWN_EVALUATION_AUTO, true, true};
     FILE *json = NULL;
     for (; at + 1 < argc && strncmp(argv[at], "--", 2) == 0; at += 2) {
         if (strcmp(argv[at], "--runs") == 0)
@@ -235,6 +257,8 @@ int main(int argc, char **argv)
             wanted_resolution = (uint32_t)atoi(argv[at + 1]);
         else if (strcmp(argv[at], "--peers") == 0)
             how.peers = atoi(argv[at + 1]) != 0;
+        else if (strcmp(argv[at], "--dual") == 0)
+            how.dual = atoi(argv[at + 1]) != 0;
         else if (strcmp(argv[at], "--as") == 0)
             how.evaluation = strcmp(argv[at + 1], "listed") == 0     ? HEWN_EVALUATION_LISTED
                              : strcmp(argv[at + 1], "straight") == 0 ? HEWN_EVALUATION_STRAIGHT

@@ -27,14 +27,20 @@ void load_edge(uint vertex, uint end, uvec3 base, out Edge edge)
     uint record = 0u;
     if (vertex < end)
         record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
-    edge.axis = record >> 9;
+    edge.axis = record >> 9 & 3u;
     uvec3 first = base + (uvec3(record, record >> 3, record >> 6) & 7u);
-    for (uint i = 0u; i < 3u; i++)
+    /* All ends, since a number that is picked by the axis would be read lane by lane. */
+    vec3 ends;
+    uvec3 cells;
+    for (uint i = 0u; i < 3u; i++) {
         edge.start[i] = sample_coordinate(push.grid, i, first[i]);
-    edge.end = sample_coordinate(push.grid, edge.axis, first[edge.axis] + 1u);
+        ends[i] = sample_coordinate(push.grid, i, first[i] + 1u);
+        cells[i] = push.grid.cells[i];
+    }
+    edge.end = ends[edge.axis];
     precise float side = edge.end - edge.start[edge.axis];
     edge.side = side;
-    edge.place = uvec2(first[edge.axis], push.grid.cells[edge.axis]);
+    edge.place = uvec2(first[edge.axis], cells[edge.axis]);
 }
 
 vec3 point_along(const Edge edge, float t)
@@ -100,7 +106,7 @@ void write_solved(uint vertex, const Edge edge, vec3 at, vec4 gradient, float at
     float off = gradient.w / size;
     if (push.dual != 0u && sloped && abs(off) <= push.grid.cell * CORRECTED)
         at -= off * (gradient.xyz / size);
-    write_vertex(vertex, at, sloped ? gradient.xyz / size : outward);
+    write_vertex(vertex, at, (sloped ? gradient.xyz / size : outward) + 0.0);
     float residual = abs(gradient.w) / (size * push.grid.cell);
     if (sloped && finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
         atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));

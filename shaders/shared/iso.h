@@ -120,9 +120,13 @@ struct hewn_spread_push {
     HEWN_UINTS edges; /* in: the masks; out: the numbers of vertices */
     HEWN_UINTS vertex_bases;
     HEWN_UINTS triangle_bases;
-    HEWN_UINTS vertices; /* out: brick (packed) and 512 * axis + sample in the first two words of each position */
+    HEWN_UINTS vertices; /* out: brick (packed) and sample + 512 * axis + 2048 * brick, that in seven bits an axis, in
+                            the first two words of each position */
     HEWN_UINTS indices;  /* out: slot, sample + 512 * pattern + 131072 * triangle in each triangle's first two words */
 };
+
+/* Where no side has more cells, a brick's coordinates fit seven bits each. */
+#define HEWN_SHORT_CELLS 1024u
 
 /* Vertices that an invocation solves one after the other. */
 #define HEWN_VERTICES_EACH 16u

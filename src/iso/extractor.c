@@ -46,7 +46,7 @@ static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *
           sizeof(struct hewn_sign_push)},
          &extractor->signs,
          STRAIGHT | LISTED},
-        {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_GRADIENT,
+        {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_ALONG,
           sizeof(struct hewn_vertex_push)},
          &extractor->vertices,
          STRAIGHT},
