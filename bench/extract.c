@@ -14,6 +14,7 @@
 #include "samples.h"
 
 #include "base/clock.h"
+#include "eval/internal.h"
 #include "iso/extractor.h"
 
 #define THREADS 2
@@ -54,6 +55,7 @@ typedef struct outcome {
     double first; /* compiling and the first run */
     bool listed;
     uint64_t hewn_triangles, peer_triangles;
+    double brick_bytes, brick_operations; /* a brick writes and reads; 0: not known */
 } outcome;
 
 typedef struct manner {
@@ -67,6 +69,42 @@ static double processor_seconds(void)
     getrusage(RUSAGE_SELF, &used);
     return (double)used.ru_utime.tv_sec + (double)used.ru_stime.tv_sec +
            1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+/* Bytes a second that both threads copy: what they read and what they write. */
+static double copying_speed(void)
+{
+    enum { MEGABYTES = 256, TRIES = 5 };
+    const size_t bytes = (size_t)MEGABYTES << 20, share = bytes / (2 * THREADS);
+    char *block = malloc(bytes);
+    double best = 0;
+    if (!block)
+        return 0;
+    memset(block, 1, bytes);
+    for (int i = 0; i < TRIES; i++) {
+        double begin = hewn_clock_now();
+#pragma omp parallel for schedule(static) num_threads(THREADS)
+        for (int k = 0; k < THREADS; k++)
+            memcpy(block + (size_t)(2 * k + 1) * share, block + (size_t)(2 * k) * share, share);
+        best = fmax(best, (double)bytes / (hewn_clock_now() - begin));
+    }
+    free(block);
+    return best;
+}
+
+/* What a brick with surface moves at the least, each thing written once and read once but the mesh, which is only
+ * written; and about how many operations of a processor its field takes: a value a sample, and for each vertex five and
+ * a gradient that costs as much as two. */
+static void weigh_brick(const hewn_extractor *extractor, const hewn_extract_stats *stats,
+                        const hewn_triangles *triangles, outcome *out)
+{
+    enum { WORDS = 8 + 16 + 2 * 48 + 2 + 1 + 2 + 2 + 16 }; /* links, signs, edges, counts, list, cuts, remote, marks */
+    double bricks = (double)stats->bricks_active, vertices = (double)triangles->vertex_count / bricks, weight = 0;
+    const hewn_listing *listing = &extractor->code->listing;
+    out->brick_bytes = 2 * 4 * WORDS + vertices * (2 * 8 + 24) + 12 * (double)triangles->triangle_count / bricks;
+    for (size_t i = 0; i < listing->count; i++)
+        weight += hewn_listing_weight(&listing->steps[i]);
+    out->brick_operations = out->listed ? 0 : weight * (512 + 7 * vertices);
 }
 
 static void stop_on(hewn_result result, const hewn_error *error)
@@ -110,8 +148,10 @@ static void run_hewn(hewn_extractor *extractor, const hewn_box *bounds, uint32_t
     double begin = hewn_clock_now();
     stop_on(hewn_extract(extractor, &desc, &triangles, &stats, &error), &error);
     *seconds = hewn_clock_now() - begin;
-    if (cubes)
+    if (cubes) {
         out->hewn_triangles = triangles.triangle_count;
+        weigh_brick(extractor, &stats, &triangles, out);
+    }
     hewn_triangles_destroy(&triangles);
 }
 
@@ -222,17 +262,25 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
            (unsigned long long)result->peer_triangles);
     for (int k = 0; k < STAGES; k++)
         printf(" %s %.3f", stage_names[k], result->stage[k]);
-    printf("\n");
+    printf("   a brick: %.0f bytes, %.0f operations\n", result->brick_bytes, result->brick_operations);
     if (json)
         fprintf(json,
-                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
+                "%s\n    {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
                 "\"first_seconds\": %.4f, \"hewn_seconds\": %.4f, \"hewn_dc_seconds\": %.4f, "
                 "\"sampling_seconds\": %.4f, "
                 "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"hewn_processor_seconds\": %.4f, "
-                "\"times_less_processor\": %.3f, \"triangles\": %llu}",
+                "\"times_less_processor\": %.3f, \"triangles\": %llu, \"brick_bytes\": %.0f, "
+                "\"brick_operations\": %.0f}",
                 first ? "" : ",", entry->name, resolution, result->listed ? "lists" : "straight", runs, result->first,
                 ours, dual, sampling, meshing, ratio, processor, by_processor,
-                (unsigned long long)result->hewn_triangles);
+                (unsigned long long)result->hewn_triangles, result->brick_bytes, result->brick_operations);
+}
+
+/* How many processes want the processors, on average over a minute; negative: not known. */
+static double machine_load(void)
+{
+    double load[1];
+    return getloadavg(load, 1) == 1 ? load[0] : -1;
 }
 
 static bool wanted(const contest *entry, int argc, char **argv, int from)
@@ -275,8 +323,11 @@ int main(int argc, char **argv)
         hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
     printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %19s   %11s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn mc",
            "sampling + VTK", "ratio", "processor, ratio", "Hewn dc", "triangles", "VTK's");
+    double speed = copying_speed();
+    printf("copying moves %.1f GB/s (read and written); load of the machine %.1f\n", 1e-9 * speed, machine_load());
     if (json)
-        fprintf(json, "[");
+        fprintf(json, "{\"device\": \"%s\", \"threads\": %d, \"copy_bytes_per_second\": %.3e, \"load\": %.1f,\n  \"scenes\": [",
+                hewn_device_get_info(device)->name, THREADS, speed, machine_load());
     bool first = true;
     for (size_t i = 0; i < sizeof contests / sizeof *contests; i++) {
         if (!wanted(&contests[i], argc, argv, at))
@@ -289,7 +340,7 @@ int main(int argc, char **argv)
         fflush(stdout);
     }
     if (json) {
-        fprintf(json, "\n]\n");
+        fprintf(json, "\n  ], \"load_at_end\": %.1f}\n", machine_load());
         fclose(json);
     }
     hewn_device_destroy(&device);

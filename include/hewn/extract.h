@@ -54,7 +54,7 @@ typedef struct hewn_extract_desc {
 /* What an extraction did. Seconds are wall time on the caller's thread; begin counts from the start of the run. */
 typedef struct hewn_extract_stage {
     const char *name; /* prepare, cull, evaluate, extract, suspects, read_back; where it is adaptive collapse; in parts
-                         prepare, count, extract */
+                         prepare, count, extract, take (what the sink does, beside extract) */
     double begin, end;
 } hewn_extract_stage;
 

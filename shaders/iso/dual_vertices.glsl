@@ -3,6 +3,7 @@
 #include "iso/dual_record.h"
 #include "iso/grid.h"
 #include "iso/qef.h"
+#include "iso/whole_loops.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
@@ -197,4 +198,6 @@ void main()
         atomicAdd(push.summary.at[HEWN_SUMMARY_PLANES], placed.found);
     if (placed.missed || (off > LOST && off <= 3.0e38 && length(along) <= 0.8 * count))
         atomicAdd(push.summary.at[HEWN_SUMMARY_LOST], 1u);
+    if (loops_were_cut(push.count))
+        atomicMax(push.summary.at[HEWN_SUMMARY_CUT], 1u);
 }

@@ -3,6 +3,7 @@
 #include "iso/grid.h"
 #include "iso/root_search.h"
 #include "iso/together.h"
+#include "iso/whole_loops.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
@@ -157,6 +158,10 @@ void main()
         end = push.vertex_bases.at[slot + 1u];
     uvec3 base = 8u * unpack_brick(push.bricks.at[slot]);
     field_select(slot);
+    begin += push.first_turn * 4u * A_BRICK;
+    end = min(end, begin + push.turns * 4u * A_BRICK);
     for (uint chunk = begin; chunk < end; chunk += 4u * A_BRICK)
         solve_four(chunk + 4u * (own % A_BRICK), end, base);
+    if (loops_were_cut(push.count))
+        atomicMax(push.summary.at[HEWN_SUMMARY_CUT], 1u);
 }

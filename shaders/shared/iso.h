@@ -146,7 +146,8 @@ struct hewn_vertex_push {
 #define HEWN_SUMMARY_CORNERS 3u  /* at corners, */
 #define HEWN_SUMMARY_PLANES 4u   /* planes found that no crossing had seen, */
 #define HEWN_SUMMARY_LOST 5u     /* vertices still off the surface */
-#define HEWN_SUMMARY_WORDS 6u
+#define HEWN_SUMMARY_CUT 6u      /* not 0: loops ended before they were done, see shaders/iso/whole_loops.h */
+#define HEWN_SUMMARY_WORDS 7u
 
 struct hewn_triangle_push {
     HEWN_UINT count;
