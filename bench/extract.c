@@ -1,6 +1,6 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process. usage: extract [--runs N] [--res N] [--peers 0] [--dual 0] [--as listed|straight] [--json FILE] [SCENE ...], SCENE one
- * of csg, gyroid, menger, random, random100, random10000. */
+ * process. usage: extract [--runs N] [--res N] [--peers 0] [--dual 0] [--as listed|straight] [--json FILE] [SCENE ...],
+ * SCENE one of csg, gyroid, menger, random, random100, random10000. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,8 +51,8 @@ typedef struct outcome {
     double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];
     double hewn_processor[MOST_RUNS], peer_processor[MOST_RUNS]; /* both cores together: other processes do not count */
     double dual[MOST_RUNS]; /* Hewn by dual contouring, which peers here do not have */
-    double stage[STAGES]; /* processor seconds of the last run */
-    double first; /* compiling and the first run */
+    double stage[STAGES];   /* processor seconds of the last run */
+    double first;           /* compiling and the first run */
     bool listed;
     uint64_t hewn_triangles, peer_triangles;
     double brick_bytes, brick_operations; /* a brick writes and reads; 0: not known */
@@ -197,10 +197,6 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
                                      &(hewn_code_desc){.evaluation = how->evaluation}, &extractor, &error),
             &error);
     out->listed = hewn_code_is_listed(extractor->code);
-    size_t samples = (size_t)resolution + 1;
-    float *values = malloc(samples * samples * samples * sizeof *values);
-    if (!values)
-        exit(1);
     peer subject = {.field = entry->dense, .lo = (float)bounds.lo[0], .hi = (float)bounds.hi[0]};
     if (entry->dense) {
         subject.lo = entry->dense->lo;
@@ -209,6 +205,10 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
         subject.heap = heap_read(hewn_scene_field(scene), &subject.heap_count);
     }
     bool peers = how->peers && !entry->alone && (subject.field || subject.heap);
+    size_t samples = (size_t)resolution + 1;
+    float *values = peers ? malloc(samples * samples * samples * sizeof *values) : NULL;
+    if (peers && !values)
+        exit(1);
     double unused[2];
     run_hewn(extractor, &bounds, resolution, HEWN_METHOD_MARCHING_CUBES, unused, out);
     out->first = hewn_clock_now() - compile;
@@ -326,8 +326,10 @@ int main(int argc, char **argv)
     double speed = copying_speed();
     printf("copying moves %.1f GB/s (read and written); load of the machine %.1f\n", 1e-9 * speed, machine_load());
     if (json)
-        fprintf(json, "{\"device\": \"%s\", \"threads\": %d, \"copy_bytes_per_second\": %.3e, \"load\": %.1f,\n  \"scenes\": [",
-                hewn_device_get_info(device)->name, THREADS, speed, machine_load());
+        fprintf(
+            json,
+            "{\"device\": \"%s\", \"threads\": %d, \"copy_bytes_per_second\": %.3e, \"load\": %.1f,\n  \"scenes\": [",
+            hewn_device_get_info(device)->name, THREADS, speed, machine_load());
     bool first = true;
     for (size_t i = 0; i < sizeof contests / sizeof *contests; i++) {
         if (!wanted(&contests[i], argc, argv, at))

@@ -38,7 +38,7 @@ struct hewn_keep_push {
     HEWN_UINTS parent_ranges;
     HEWN_UINTS origins;
     HEWN_UINTS
-        places; /* out where they are counted: the lengths; in where they are written: these summed, and the total */
+    places; /* out where they are counted: the lengths; in where they are written: these summed, and the total */
     HEWN_UINTS choices;
     HEWN_UINTS lists;  /* out */
     HEWN_UINTS ranges; /* out, a kept block: first instruction and count */

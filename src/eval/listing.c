@@ -234,7 +234,6 @@ uint32_t hewn_listing_weight(const hewn_code_step *step)
 
 /* --- text -------------------------------------------------------------------------------------------------------- */
 
-
 static const char *const types[] = {"float", "vec2", "vec4"};
 
 static void write_number(const hewn_listing *listing, uint32_t i, hewn_text *text)
@@ -387,7 +386,8 @@ void hewn_listing_write_root(const hewn_listing *listing, hewn_listing_flavour f
     write_operand(listing, (uint32_t)(listing->count - 1), flavour, false, text);
 }
 
-static void write_function(const hewn_listing *listing, hewn_listing_flavour flavour, const char *opening, hewn_text *text)
+static void write_function(const hewn_listing *listing, hewn_listing_flavour flavour, const char *opening,
+                           hewn_text *text)
 {
     hewn_text_append(text, opening);
     hewn_listing_write_steps(listing, flavour, NULL, text);

@@ -33,8 +33,8 @@ typedef struct hewn_listing {
     size_t count;
     float *parameters; /* rounded once; what is below the smallest normal number is 0 */
     size_t parameter_count;
-    bool fixed; /* numbers are written into the code */
-    bool near;  /* what is written is for coordinates up to HEWN_REACH: HEWN_FLAVOUR_NEAR */
+    bool fixed;   /* numbers are written into the code */
+    bool near;    /* what is written is for coordinates up to HEWN_REACH: HEWN_FLAVOUR_NEAR */
     uint32_t row; /* while rows are written side by side: which one, from 1 on; else 0 */
     bool parted;  /* walks along an axis pay, and the steps tell how */
 } hewn_listing;
@@ -62,7 +62,11 @@ bool hewn_listing_needs_guard(const hewn_listing *listing, const hewn_code_step 
 uint32_t hewn_listing_weight(const hewn_code_step *step);
 
 /* What listing.c and along.c write with: a type, and steps that `wanted` picks, as declarations and statements. */
-typedef enum hewn_listing_flavour { HEWN_LISTING_POINT, HEWN_LISTING_INTERVAL, HEWN_LISTING_GRADIENT } hewn_listing_flavour;
+typedef enum hewn_listing_flavour {
+    HEWN_LISTING_POINT,
+    HEWN_LISTING_INTERVAL,
+    HEWN_LISTING_GRADIENT
+} hewn_listing_flavour;
 typedef bool (*hewn_step_filter)(const hewn_code_step *step);
 void hewn_listing_write_steps(const hewn_listing *listing, hewn_listing_flavour flavour, hewn_step_filter wanted,
                               hewn_text *text);

@@ -204,10 +204,11 @@ enum { LONGEST = 16000, MOST_INSTRUCTIONS = 60000 };
 
 static hewn_result check_length(uint64_t length, uint64_t most, hewn_error *error)
 {
-    return length <= most ? HEWN_OK
-                          : hewn_fail(error, HEWN_LIMIT,
-                                      "%llu shapes matter in one place, more than the %llu that this device can look at",
-                                      (unsigned long long)length, (unsigned long long)most);
+    return length <= most
+               ? HEWN_OK
+               : hewn_fail(error, HEWN_LIMIT,
+                           "%llu shapes matter in one place, more than the %llu that this device can look at",
+                           (unsigned long long)length, (unsigned long long)most);
 }
 
 static uint32_t longest_list(const list_level *level)

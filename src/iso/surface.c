@@ -267,9 +267,10 @@ static void emit_on_host(const struct hewn_grid *grid, const hewn_bricks *bricks
 
 hewn_result hewn_emission_fail_cut(hewn_error *error)
 {
-    return hewn_fail(error, HEWN_LIMIT,
-                     "so many shapes matter in one place that this device gives up on it; smaller cells have fewer, and "
-                     "the method mc takes more than the others");
+    return hewn_fail(
+        error, HEWN_LIMIT,
+        "so many shapes matter in one place that this device gives up on it; smaller cells have fewer, and "
+        "the method mc takes more than the others");
 }
 
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,

@@ -32,7 +32,7 @@ static hewn_extractor *make_crowd(int count, hewn_evaluation evaluation)
     hewn_extractor *extractor;
     uint64_t random = 5;
     GPU_TEST_TRY(hewn_field_create(&field, &error));
-    hewn_node box = hewn_rotate(field, hewn_box_shape(field, 0.5, 0.6, 0.55), 1, 2, 3, 0.5), all = box;
+    hewn_node box = hewn_rotate(field, hewn_box_shape(field, 1, 1.2, 1.1), 1, 2, 3, 0.5), all = box;
     for (int i = 1; i < count; i++) {
         double at[3];
         for (int k = 0; k < 3; k++)
