@@ -266,14 +266,20 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
     if (json)
         fprintf(json,
                 "%s\n    {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
-                "\"first_seconds\": %.4f, \"hewn_seconds\": %.4f, \"hewn_dc_seconds\": %.4f, "
-                "\"sampling_seconds\": %.4f, "
-                "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"hewn_processor_seconds\": %.4f, "
-                "\"times_less_processor\": %.3f, \"triangles\": %llu, \"brick_bytes\": %.0f, "
-                "\"brick_operations\": %.0f}",
+                "\"first_seconds\": %.4f, \"hewn_seconds\": %.4f, \"hewn_processor_seconds\": %.4f, "
+                "\"triangles\": %llu, \"brick_bytes\": %.0f, \"brick_operations\": %.0f",
                 first ? "" : ",", entry->name, resolution, result->listed ? "lists" : "straight", runs, result->first,
-                ours, dual, sampling, meshing, ratio, processor, by_processor,
-                (unsigned long long)result->hewn_triangles, result->brick_bytes, result->brick_operations);
+                ours, processor, (unsigned long long)result->hewn_triangles, result->brick_bytes,
+                result->brick_operations);
+    if (json && meshing > 0)
+        fprintf(json,
+                ", \"sampling_seconds\": %.4f, \"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, "
+                "\"times_less_processor\": %.3f",
+                sampling, meshing, ratio, by_processor);
+    if (json && dual > 0)
+        fprintf(json, ", \"hewn_dc_seconds\": %.4f", dual);
+    if (json)
+        fprintf(json, "}");
 }
 
 /* How many processes want the processors, on average over a minute; negative: not known. */

@@ -4,7 +4,6 @@
 #include "iso/grid.h"
 #include "iso/qef.h"
 #include "iso/whole_loops.h"
-
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {
@@ -12,9 +11,7 @@ layout(push_constant, scalar) uniform Push
 };
 
 #include "iso/dual_place.h"
-
 #include "iso/dual_search.h"
-
 #include "iso/dual_ask.h"
 
 /* What a vertex is at: each phase asks the field, and what it is told decides on the next one. */
