@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "eval/listing.h"
 #include "hewn/hewn.h"
 #include "iso/extractor.h"
 
