@@ -71,7 +71,7 @@ void solve(uint vertex, inout float most, inout uint caps)
     if (push.dual != 0u && sloped && abs(off) <= push.grid.cell * CORRECTED)
         at -= off * (gradient.xyz / size);
     /* Written in one place: a CPU driver runs each write for all lanes, and writing costs more than most fields. */
-    write_vertex(vertex, at, (sloped ? gradient.xyz / size : outward) + 0.0);
+    write_vertex(vertex, at, plain_zeros(sloped ? gradient.xyz / size : outward));
     float residual = sloped ? abs(gradient.w) / (size * push.grid.cell) : 0.0;
     most = finite(residual) ? max(most, residual) : most;
     caps += capped ? 1u : 0u;

@@ -107,7 +107,7 @@ void write_solved(uint vertex, const Edge edge, vec3 at, vec4 gradient, float at
     float off = gradient.w / size;
     if (push.dual != 0u && sloped && abs(off) <= push.grid.cell * CORRECTED)
         at -= off * (gradient.xyz / size);
-    write_vertex(vertex, at, (sloped ? gradient.xyz / size : outward) + 0.0);
+    write_vertex(vertex, at, plain_zeros(sloped ? gradient.xyz / size : outward));
     float residual = abs(gradient.w) / (size * push.grid.cell);
     if (sloped && finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
         atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
