@@ -75,9 +75,7 @@ typedef struct hewn_mesh_part {
     uint64_t open_count;
 } hewn_mesh_part;
 
-/* Where the parts of a mesh go. What a part points to is there for the time of the call only. Calls of `take` come in
- * the order of the parts, one at a time, but perhaps on another thread than the caller's, which makes the next part
- * meanwhile; `bytes` is not called while one is under way. */
+/* Where the parts of a mesh go. What a part points to is there for the time of the call only. */
 typedef struct hewn_mesh_sink {
     void *user;
     hewn_result (*take)(void *user, const hewn_mesh_part *part, hewn_error *error);

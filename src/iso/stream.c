@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "gpu/device.h"
-#include "iso/handing.h"
 #include "iso/part.h"
 
 /* Of all bricks, by number, and where there is room for more. */
@@ -21,7 +20,6 @@ typedef struct brick_table {
 typedef struct stream {
     hewn_extraction run;
     const hewn_mesh_sink *sink;
-    hewn_handing handing; /* the part before the one that is being made, while the sink is at it */
     hewn_region whole;
     brick_table table;
     hewn_number_run open;
@@ -43,11 +41,8 @@ static uint64_t kept_bytes(const stream *of)
     return 4 * (uint64_t)(of->table.number_room + of->table.base_room);
 }
 
-/* That the sink holds, or, while it is at a part, may take. */
 static uint64_t sink_bytes(const stream *of, const hewn_mesh_part *part)
 {
-    if (of->handing.under_way)
-        return of->handing.host_bytes;
     return of->sink->bytes ? of->sink->bytes(of->sink->user, part) : 0;
 }
 
@@ -149,10 +144,6 @@ static hewn_result go_over(stream *of, const char *stage, bool counts_only, uint
         }
         HEWN_TRY(hewn_progress_report(of->run.desc->progress, stage, (double)begin / (double)of->whole.end, error));
         hewn_result result = try_part(of, begin, end, counts_only, work, error);
-        if (was_too_large(of, result) && of->handing.under_way) { /* perhaps it fits when that is gone */
-            HEWN_TRY(hewn_handing_end(&of->handing, of->run.extractor->device, error));
-            continue;
-        }
         if (was_too_large(of, result) && end - begin > 1) {
             length = (end - begin) / 2;
             vertices /= 2;
@@ -377,17 +368,15 @@ static hewn_result assemble(stream *of, const hewn_part *part, const naming *nam
 }
 
 /* The last moment to find that a part is too large: what the device no longer needs is given back before the sink takes
- * memory. It takes the part while the next one is made, if the part's buffers are where the host reaches them: else the
- * part lies in the workspace, which the next one needs. */
-static hewn_result hand_over(stream *of, const hewn_mesh_part *given, uint64_t bricks, hewn_buffer buffers[3],
+ * memory. */
+static hewn_result hand_over(stream *of, const hewn_mesh_part *given, uint64_t bricks, const hewn_buffer *buffer,
                              hewn_error *error)
 {
     hewn_device *device = of->run.extractor->device;
     uint64_t most = of->run.desc->max_memory;
-    bool beside = buffers[0].mapped && buffers[1].mapped && buffers[2].mapped;
-    if (beside)
+    if (buffer->mapped) /* else the part lies in the workspace */
         hewn_workspace_clear(&of->run.workspace);
-    uint64_t taking = sink_bytes(of, given), host = kept_bytes(of) + taking + 4 * bricks;
+    uint64_t host = kept_bytes(of) + sink_bytes(of, given) + 4 * bricks;
     if (most > 0 && device->bytes - of->device_before + host > most) {
         device->refused_bytes = device->bytes;
         of->host = host;
@@ -398,22 +387,12 @@ static hewn_result hand_over(stream *of, const hewn_mesh_part *given, uint64_t b
     note_peak(of, host);
     of->decided = true;
     of->run.stats->parts++;
-    hewn_handing_begin(&of->handing, of->sink, given, buffers, taking);
-    if (!beside)
-        HEWN_TRY(hewn_handing_end(&of->handing, device, error));
+    HEWN_TRY(of->sink->take(of->sink->user, given, error));
     of->done += given->vertices[0].count;
     of->done_centres += given->vertices[1].count;
     of->done_triangles += given->triangles[0].count;
     of->done_fans += given->triangles[1].count;
     return HEWN_OK;
-}
-
-/* The part before this one leaves; what goes wrong with that is not a matter of this part's size. */
-static hewn_result let_earlier_go(stream *of, hewn_error *error)
-{
-    hewn_result result = hewn_handing_end(&of->handing, of->run.extractor->device, error);
-    of->decided = of->decided || result != HEWN_OK;
-    return result;
 }
 
 static hewn_result emit_into(stream *of, hewn_part *part, hewn_buffer buffers[3], hewn_error *error)
@@ -432,9 +411,7 @@ static hewn_result emit_into(stream *of, hewn_part *part, hewn_buffer buffers[3]
     hewn_free(names.firsts);
     note_peak(of, host);
     if (result == HEWN_OK)
-        result = let_earlier_go(of, error);
-    if (result == HEWN_OK)
-        result = hand_over(of, &given, part->bricks.count, buffers, error);
+        result = hand_over(of, &given, part->bricks.count, &buffers[0], error);
     if (result == HEWN_OK) {
         add_emission(of, &emission);
         of->run.stats->fans += part->surface.fan_count;
@@ -472,16 +449,13 @@ static hewn_result run_passes(stream *of, hewn_error *error)
     if (!dual)
         of->triangles = UINT64_MAX; /* there are no others behind them */
     HEWN_TRY(go_over(of, "extract", false, dual ? A_DUAL_VERTEX : A_VERTEX, emit_part, error));
-    double extracted = hewn_clock_now();
-    HEWN_TRY(hewn_handing_end(&of->handing, run->extractor->device, error));
     if (of->done_capped > 0 && !run->desc->open)
         run->stats->left_bounds = true;
     if (of->done_capped == of->crossings)
         return hewn_extraction_explain_empty(run, error);
     run->stats->vertices = of->named + of->done_centres;
     run->stats->triangles = of->done_triangles + of->done_fans;
-    HEWN_TRY(hewn_extraction_stage(run, "extract", counted, extracted, 1, error));
-    return hewn_extraction_stage(run, "take", of->handing.begin, of->handing.end, 1, error);
+    return hewn_extraction_stage(run, "extract", counted, hewn_clock_now(), 1, error);
 }
 
 hewn_result hewn_extract_parts(hewn_extractor *extractor, const hewn_extract_desc *desc, const hewn_mesh_sink *sink,
@@ -496,7 +470,6 @@ hewn_result hewn_extract_parts(hewn_extractor *extractor, const hewn_extract_des
     of.whole = hewn_region_whole(&of.run.grid);
     of.device_before = extractor->device->bytes;
     hewn_result result = run_passes(&of, error);
-    (void)hewn_handing_end(&of.handing, extractor->device, NULL); /* after an error */
     extractor->device->most_bytes = 0;
     hewn_free(of.table.numbers);
     hewn_free(of.table.bases);
