@@ -1,6 +1,6 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process. usage: extract [--runs N] [--res N] [--peers 0] [--as listed|straight] [--json FILE] [SCENE ...], SCENE one
- * of csg, gyroid, menger, random, random100, random10000. */
+ * process. usage: extract [--runs N] [--res N] [--peers 0] [--dual 0] [--as listed|straight] [--json FILE] [SCENE ...],
+ * SCENE one of csg, gyroid, menger, random, random100, random10000. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,9 +14,13 @@
 #include "samples.h"
 
 #include "base/clock.h"
+#include "eval/internal.h"
 #include "iso/extractor.h"
 
 #define THREADS 2
+
+enum { STAGES = 5 };
+static const char *const stage_names[STAGES] = {"cull", "evaluate", "extract", "suspects", "read_back"};
 
 typedef struct contest {
     const char *name;
@@ -47,15 +51,16 @@ typedef struct outcome {
     double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];
     double hewn_processor[MOST_RUNS], peer_processor[MOST_RUNS]; /* both cores together: other processes do not count */
     double dual[MOST_RUNS]; /* Hewn by dual contouring, which peers here do not have */
-    double stage[4];
-    double first; /* compiling and the first run */
+    double stage[STAGES];   /* processor seconds of the last run */
+    double first;           /* compiling and the first run */
     bool listed;
     uint64_t hewn_triangles, peer_triangles;
+    double brick_bytes, brick_operations; /* a brick writes and reads; 0: not known */
 } outcome;
 
 typedef struct manner {
     hewn_evaluation evaluation;
-    bool peers;
+    bool peers, dual;
 } manner;
 
 static double processor_seconds(void)
@@ -66,6 +71,42 @@ static double processor_seconds(void)
            1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
+/* Bytes a second that both threads copy: what they read and what they write. */
+static double copying_speed(void)
+{
+    enum { MEGABYTES = 256, TRIES = 5 };
+    const size_t bytes = (size_t)MEGABYTES << 20, share = bytes / (2 * THREADS);
+    char *block = malloc(bytes);
+    double best = 0;
+    if (!block)
+        return 0;
+    memset(block, 1, bytes);
+    for (int i = 0; i < TRIES; i++) {
+        double begin = hewn_clock_now();
+#pragma omp parallel for schedule(static) num_threads(THREADS)
+        for (int k = 0; k < THREADS; k++)
+            memcpy(block + (size_t)(2 * k + 1) * share, block + (size_t)(2 * k) * share, share);
+        best = fmax(best, (double)bytes / (hewn_clock_now() - begin));
+    }
+    free(block);
+    return best;
+}
+
+/* What a brick with surface moves at the least, each thing written once and read once but the mesh, which is only
+ * written; and about how many operations of a processor its field takes: a value a sample, and for each vertex five and
+ * a gradient that costs as much as two. */
+static void weigh_brick(const hewn_extractor *extractor, const hewn_extract_stats *stats,
+                        const hewn_triangles *triangles, outcome *out)
+{
+    enum { WORDS = 8 + 16 + 2 * 48 + 2 + 1 + 2 + 2 + 16 }; /* links, signs, edges, counts, list, cuts, remote, marks */
+    double bricks = (double)stats->bricks_active, vertices = (double)triangles->vertex_count / bricks, weight = 0;
+    const hewn_listing *listing = &extractor->code->listing;
+    out->brick_bytes = 2 * 4 * WORDS + vertices * (2 * 8 + 24) + 12 * (double)triangles->triangle_count / bricks;
+    for (size_t i = 0; i < listing->count; i++)
+        weight += hewn_listing_weight(&listing->steps[i]);
+    out->brick_operations = out->listed ? 0 : weight * (512 + 7 * vertices);
+}
+
 static void stop_on(hewn_result result, const hewn_error *error)
 {
     if (result == HEWN_OK)
@@ -74,24 +115,43 @@ static void stop_on(hewn_result result, const hewn_error *error)
     exit(1);
 }
 
+/* Charges what the processors did since the last call to the stage that has ended. */
+typedef struct meter {
+    double last;
+    double *stage;
+} meter;
+
+static bool charge(void *user, const char *stage, double fraction)
+{
+    meter *to = user;
+    double now = processor_seconds();
+    (void)fraction;
+    for (int k = 0; k < STAGES; k++)
+        if (strcmp(stage, stage_names[k]) == 0)
+            to->stage[k] = now - to->last;
+    to->last = now;
+    return true;
+}
+
 /* Seconds of an extraction; what `out` says of Hewn is from marching cubes, as flying edges is that too. */
 static void run_hewn(hewn_extractor *extractor, const hewn_box *bounds, uint32_t resolution, hewn_method method,
                      double *seconds, outcome *out)
 {
-    static const char *const stages[4] = {"cull", "evaluate", "extract", "read_back"};
     hewn_error error = {0};
-    hewn_extract_desc desc = {.bounds = *bounds, .resolution = resolution, .method = method};
+    bool cubes = method == HEWN_METHOD_MARCHING_CUBES;
+    double unused[STAGES];
+    meter processors = {processor_seconds(), cubes ? out->stage : unused};
+    hewn_progress progress = {.report = charge, .user = &processors};
+    hewn_extract_desc desc = {.bounds = *bounds, .resolution = resolution, .method = method, .progress = &progress};
     hewn_triangles triangles;
     hewn_extract_stats stats;
     double begin = hewn_clock_now();
     stop_on(hewn_extract(extractor, &desc, &triangles, &stats, &error), &error);
     *seconds = hewn_clock_now() - begin;
-    for (uint32_t i = 0; method == HEWN_METHOD_MARCHING_CUBES && i < stats.stage_count; i++)
-        for (int k = 0; k < 4; k++)
-            if (strcmp(stats.stages[i].name, stages[k]) == 0)
-                out->stage[k] = stats.stages[i].end - stats.stages[i].begin;
-    if (method == HEWN_METHOD_MARCHING_CUBES)
+    if (cubes) {
         out->hewn_triangles = triangles.triangle_count;
+        weigh_brick(extractor, &stats, &triangles, out);
+    }
     hewn_triangles_destroy(&triangles);
 }
 
@@ -137,10 +197,6 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
                                      &(hewn_code_desc){.evaluation = how->evaluation}, &extractor, &error),
             &error);
     out->listed = hewn_code_is_listed(extractor->code);
-    size_t samples = (size_t)resolution + 1;
-    float *values = malloc(samples * samples * samples * sizeof *values);
-    if (!values)
-        exit(1);
     peer subject = {.field = entry->dense, .lo = (float)bounds.lo[0], .hi = (float)bounds.hi[0]};
     if (entry->dense) {
         subject.lo = entry->dense->lo;
@@ -149,10 +205,15 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
         subject.heap = heap_read(hewn_scene_field(scene), &subject.heap_count);
     }
     bool peers = how->peers && !entry->alone && (subject.field || subject.heap);
+    size_t samples = (size_t)resolution + 1;
+    float *values = peers ? malloc(samples * samples * samples * sizeof *values) : NULL;
+    if (peers && !values)
+        exit(1);
     double unused[2];
     run_hewn(extractor, &bounds, resolution, HEWN_METHOD_MARCHING_CUBES, unused, out);
     out->first = hewn_clock_now() - compile;
-    run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, unused, out);
+    if (how->dual)
+        run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, unused, out);
     if (peers && entry->dense)
         run_peers(&subject, resolution, values, unused, unused + 1, out);
     for (int i = 0; i < runs; i++) {
@@ -163,7 +224,8 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
             run_peers(&subject, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
         out->hewn_processor[i] = between - begin;
         out->peer_processor[i] = processor_seconds() - between;
-        run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, &out->dual[i], out);
+        if (how->dual)
+            run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, &out->dual[i], out);
     }
     free((void *)subject.heap);
     free(values);
@@ -194,23 +256,37 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
     double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
     double dual = bench_median(result->dual, runs);
     double processor = bench_median(result->hewn_processor, runs), by_processor = processor_ratio(result, runs);
-    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   cpu %7.3f %6.2fx   dc %8.3f   %9llu %9llu   cull "
-           "%.3f, evaluate %.3f, "
-           "extract %.3f, read back %.3f\n",
+    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   cpu %7.3f %6.2fx   dc %8.3f   %9llu %9llu   cpu:",
            entry->name, resolution, result->listed ? "lists" : "straight", result->first, ours, sampling, meshing,
            ratio, processor, by_processor, dual, (unsigned long long)result->hewn_triangles,
-           (unsigned long long)result->peer_triangles, result->stage[0], result->stage[1], result->stage[2],
-           result->stage[3]);
+           (unsigned long long)result->peer_triangles);
+    for (int k = 0; k < STAGES; k++)
+        printf(" %s %.3f", stage_names[k], result->stage[k]);
+    printf("   a brick: %.0f bytes, %.0f operations\n", result->brick_bytes, result->brick_operations);
     if (json)
         fprintf(json,
-                "%s\n  {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
-                "\"first_seconds\": %.4f, \"hewn_seconds\": %.4f, \"hewn_dc_seconds\": %.4f, "
-                "\"sampling_seconds\": %.4f, "
-                "\"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, \"hewn_processor_seconds\": %.4f, "
-                "\"times_less_processor\": %.3f, \"triangles\": %llu}",
+                "%s\n    {\"scene\": \"%s\", \"resolution\": %u, \"evaluation\": \"%s\", \"runs\": %d, "
+                "\"first_seconds\": %.4f, \"hewn_seconds\": %.4f, \"hewn_processor_seconds\": %.4f, "
+                "\"triangles\": %llu, \"brick_bytes\": %.0f, \"brick_operations\": %.0f",
                 first ? "" : ",", entry->name, resolution, result->listed ? "lists" : "straight", runs, result->first,
-                ours, dual, sampling, meshing, ratio, processor, by_processor,
-                (unsigned long long)result->hewn_triangles);
+                ours, processor, (unsigned long long)result->hewn_triangles, result->brick_bytes,
+                result->brick_operations);
+    if (json && meshing > 0)
+        fprintf(json,
+                ", \"sampling_seconds\": %.4f, \"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, "
+                "\"times_less_processor\": %.3f",
+                sampling, meshing, ratio, by_processor);
+    if (json && dual > 0)
+        fprintf(json, ", \"hewn_dc_seconds\": %.4f", dual);
+    if (json)
+        fprintf(json, "}");
+}
+
+/* How many processes want the processors, on average over a minute; negative: not known. */
+static double machine_load(void)
+{
+    double load[1];
+    return getloadavg(load, 1) == 1 ? load[0] : -1;
 }
 
 static bool wanted(const contest *entry, int argc, char **argv, int from)
@@ -226,7 +302,7 @@ int main(int argc, char **argv)
     const char *folder = getenv("HEWN_SCENES");
     int runs = 5, at = 1;
     uint32_t wanted_resolution = 0;
-    manner how = {HEWN_EVALUATION_AUTO, true};
+    manner how = {HEWN_EVALUATION_AUTO, true, true};
     FILE *json = NULL;
     for (; at + 1 < argc && strncmp(argv[at], "--", 2) == 0; at += 2) {
         if (strcmp(argv[at], "--runs") == 0)
@@ -235,6 +311,8 @@ int main(int argc, char **argv)
             wanted_resolution = (uint32_t)atoi(argv[at + 1]);
         else if (strcmp(argv[at], "--peers") == 0)
             how.peers = atoi(argv[at + 1]) != 0;
+        else if (strcmp(argv[at], "--dual") == 0)
+            how.dual = atoi(argv[at + 1]) != 0;
         else if (strcmp(argv[at], "--as") == 0)
             how.evaluation = strcmp(argv[at + 1], "listed") == 0     ? HEWN_EVALUATION_LISTED
                              : strcmp(argv[at + 1], "straight") == 0 ? HEWN_EVALUATION_STRAIGHT
@@ -251,8 +329,13 @@ int main(int argc, char **argv)
         hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
     printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %19s   %11s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn mc",
            "sampling + VTK", "ratio", "processor, ratio", "Hewn dc", "triangles", "VTK's");
+    double speed = copying_speed();
+    printf("copying moves %.1f GB/s (read and written); load of the machine %.1f\n", 1e-9 * speed, machine_load());
     if (json)
-        fprintf(json, "[");
+        fprintf(
+            json,
+            "{\"device\": \"%s\", \"threads\": %d, \"copy_bytes_per_second\": %.3e, \"load\": %.1f,\n  \"scenes\": [",
+            hewn_device_get_info(device)->name, THREADS, speed, machine_load());
     bool first = true;
     for (size_t i = 0; i < sizeof contests / sizeof *contests; i++) {
         if (!wanted(&contests[i], argc, argv, at))
@@ -265,7 +348,7 @@ int main(int argc, char **argv)
         fflush(stdout);
     }
     if (json) {
-        fprintf(json, "\n]\n");
+        fprintf(json, "\n  ], \"load_at_end\": %.1f}\n", machine_load());
         fclose(json);
     }
     hewn_device_destroy(&device);

@@ -114,10 +114,10 @@ HEWN_API hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_
 
 /* The same mesh in parts, which a sink takes one by one: for meshes that are larger than memory. The field is evaluated
  * twice, first to count. Vertices and triangles are the bits that hewn_extract() gives, at the same places; so are the
- * statistics, but for the stages. Not for `adaptive` (HEWN_INVALID_ARGUMENT). HEWN_LIMIT for 2^32 - 1 vertices or more;
- * HEWN_OUT_OF_DEVICE_MEMORY where even the least part needs more than `max_memory`, saying how much; else as
- * hewn_extract() and as the sink. After an error the sink may have taken some parts, also where there is no surface but
- * a cap (HEWN_BAD_INPUT). */
+ * statistics, but for the stages. Not for `adaptive` (HEWN_INVALID_ARGUMENT). HEWN_LIMIT for 2^32 - 1 vertices or more
+ * and as hewn_extract(); HEWN_OUT_OF_DEVICE_MEMORY where even the least part needs more than `max_memory`, saying how
+ * much; else as hewn_extract() and as the sink. After an error the sink may have taken some parts, also where there is
+ * no surface but a cap (HEWN_BAD_INPUT). */
 HEWN_API hewn_result hewn_extract_parts(hewn_extractor *extractor, const hewn_extract_desc *desc,
                                         const hewn_mesh_sink *sink, hewn_extract_stats *stats, hewn_error *error);
 

@@ -14,6 +14,17 @@ uint pack_brick(uvec3 brick)
     return brick.x | brick.y << 10 | brick.z << 20;
 }
 
+/* Seven bits an axis, which is enough for grids of up to HEWN_SHORT_CELLS. */
+uint shorten_brick(uint packed)
+{
+    return (packed & 127u) | (packed >> 10 & 127u) << 7 | (packed >> 20 & 127u) << 14;
+}
+
+uvec3 unpack_short_brick(uint packed)
+{
+    return uvec3(packed, packed >> 7, packed >> 14) & 127u;
+}
+
 /* Sign word of a slot, or what a stand-in says. */
 uint sign_word(Uints signs, uint slot, uint word)
 {

@@ -3,7 +3,7 @@
 #include "iso/dual_record.h"
 #include "iso/grid.h"
 #include "iso/qef.h"
-
+#include "iso/whole_loops.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
 {
@@ -11,9 +11,7 @@ layout(push_constant, scalar) uniform Push
 };
 
 #include "iso/dual_place.h"
-
 #include "iso/dual_search.h"
-
 #include "iso/dual_ask.h"
 
 /* What a vertex is at: each phase asks the field, and what it is told decides on the next one. */
@@ -197,4 +195,6 @@ void main()
         atomicAdd(push.summary.at[HEWN_SUMMARY_PLANES], placed.found);
     if (placed.missed || (off > LOST && off <= 3.0e38 && length(along) <= 0.8 * count))
         atomicAdd(push.summary.at[HEWN_SUMMARY_LOST], 1u);
+    if (loops_were_cut(push.count))
+        atomicMax(push.summary.at[HEWN_SUMMARY_CUT], 1u);
 }

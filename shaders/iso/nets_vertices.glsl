@@ -1,6 +1,7 @@
 /* Surface nets: places a vertex at the mean of its loop's crossings. One invocation a vertex. */
 #include "iso/dual_record.h"
 #include "iso/grid.h"
+#include "iso/whole_loops.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
@@ -39,4 +40,6 @@ void main()
         return;
     write_vertex(vertex, place, vertex_normal(seen, along, count));
     count_vertex(seen.w, capped);
+    if (loops_were_cut(push.count))
+        atomicMax(push.summary.at[HEWN_SUMMARY_CUT], 1u);
 }

@@ -18,6 +18,13 @@ bool finite(float value)
     return abs(value) <= 3.0e38;
 }
 
+/* A direction with no zero of negative sign: which sign zeros get differs with the way that a gradient is computed. */
+vec3 plain_zeros(vec3 direction)
+{
+    uvec3 bits = floatBitsToUint(direction); /* sums with 0 are left out by drivers */
+    return uintBitsToFloat(mix(bits, uvec3(0u), equal(bits, uvec3(0x80000000u))));
+}
+
 struct Search {
     float a, b, fa, fb;    /* the bracket */
     float guess, value;    /* the last place asked, */

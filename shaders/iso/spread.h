@@ -8,7 +8,7 @@
  * others up. */
 void spread_vertices(Uints edges, Uints vertices, uint slot, uint packed, uint vertex)
 {
-    uint word = 0u, mask = 0u;
+    uint word = 0u, mask = 0u, short_brick = shorten_brick(packed) << 11;
     uint pair = 2u * slot * HEWN_BRICK_EDGE_WORDS;
     while (word < HEWN_BRICK_EDGE_WORDS || mask != 0u) {
         if (mask == 0u) {
@@ -19,7 +19,7 @@ void spread_vertices(Uints edges, Uints vertices, uint slot, uint packed, uint v
         }
         if (mask != 0u) {
             vertices.at[3u * vertex] = packed;
-            vertices.at[3u * vertex + 1u] = 32u * (word - 1u) + uint(findLSB(mask));
+            vertices.at[3u * vertex + 1u] = 32u * (word - 1u) + uint(findLSB(mask)) + short_brick;
             mask &= mask - 1u;
             vertex++;
         }

@@ -3,6 +3,7 @@
  * surface is left with all that is in it; a cell of which a smallest part does not is a suspect. */
 #include "iso/grid.h"
 #include "iso/together.h"
+#include "iso/whole_loops.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
@@ -143,7 +144,9 @@ void main()
     bool inside = are_inside(left, slot, corner);
     uvec3 origin = first * PARTS_A_CELL, limit = cells * PARTS_A_CELL;
     uvec2 box = left == uvec2(0u) ? uvec2(0u, END) : uvec2(0u);
+    uvec2 before = left;
     while (somebody(box.y < END)) {
+        before = left;
         bool on = box.y < END;
         vec2 range = ask(box, left, origin, limit);
         asked++;
@@ -160,6 +163,8 @@ void main()
         uvec2 other = over ? first_box(left) : clear ? next : child;
         box = on ? other : box;
     }
+    /* What was left before the last box, which may have got a wrong answer, is not known to be clear. */
+    suspects |= loops_were_cut(push.count) ? before : uvec2(0u);
     push.marks.at[2u * block] = suspects.x;
     push.marks.at[2u * block + 1u] = suspects.y;
     uint count = uint(bitCount(suspects.x) + bitCount(suspects.y));

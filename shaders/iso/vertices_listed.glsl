@@ -3,6 +3,7 @@
 #include "iso/grid.h"
 #include "iso/root_search.h"
 #include "iso/together.h"
+#include "iso/whole_loops.h"
 
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push
@@ -27,14 +28,20 @@ void load_edge(uint vertex, uint end, uvec3 base, out Edge edge)
     uint record = 0u;
     if (vertex < end)
         record = floatBitsToUint(push.positions.at[3u * vertex + 1u]);
-    edge.axis = record >> 9;
+    edge.axis = record >> 9 & 3u;
     uvec3 first = base + (uvec3(record, record >> 3, record >> 6) & 7u);
-    for (uint i = 0u; i < 3u; i++)
+    /* All ends, since a number that is picked by the axis would be read lane by lane. */
+    vec3 ends;
+    uvec3 cells;
+    for (uint i = 0u; i < 3u; i++) {
         edge.start[i] = sample_coordinate(push.grid, i, first[i]);
-    edge.end = sample_coordinate(push.grid, edge.axis, first[edge.axis] + 1u);
+        ends[i] = sample_coordinate(push.grid, i, first[i] + 1u);
+        cells[i] = push.grid.cells[i];
+    }
+    edge.end = ends[edge.axis];
     precise float side = edge.end - edge.start[edge.axis];
     edge.side = side;
-    edge.place = uvec2(first[edge.axis], push.grid.cells[edge.axis]);
+    edge.place = uvec2(first[edge.axis], cells[edge.axis]);
 }
 
 vec3 point_along(const Edge edge, float t)
@@ -100,7 +107,7 @@ void write_solved(uint vertex, const Edge edge, vec3 at, vec4 gradient, float at
     float off = gradient.w / size;
     if (push.dual != 0u && sloped && abs(off) <= push.grid.cell * CORRECTED)
         at -= off * (gradient.xyz / size);
-    write_vertex(vertex, at, sloped ? gradient.xyz / size : outward);
+    write_vertex(vertex, at, plain_zeros(sloped ? gradient.xyz / size : outward));
     float residual = abs(gradient.w) / (size * push.grid.cell);
     if (sloped && finite(residual) && floatBitsToUint(residual) > push.summary.at[HEWN_SUMMARY_RESIDUAL])
         atomicMax(push.summary.at[HEWN_SUMMARY_RESIDUAL], floatBitsToUint(residual));
@@ -151,6 +158,10 @@ void main()
         end = push.vertex_bases.at[slot + 1u];
     uvec3 base = 8u * unpack_brick(push.bricks.at[slot]);
     field_select(slot);
+    begin += push.first_turn * 4u * A_BRICK;
+    end = min(end, begin + push.turns * 4u * A_BRICK);
     for (uint chunk = begin; chunk < end; chunk += 4u * A_BRICK)
         solve_four(chunk + 4u * (own % A_BRICK), end, base);
+    if (loops_were_cut(push.count))
+        atomicMax(push.summary.at[HEWN_SUMMARY_CUT], 1u);
 }

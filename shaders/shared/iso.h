@@ -120,9 +120,13 @@ struct hewn_spread_push {
     HEWN_UINTS edges; /* in: the masks; out: the numbers of vertices */
     HEWN_UINTS vertex_bases;
     HEWN_UINTS triangle_bases;
-    HEWN_UINTS vertices; /* out: brick (packed) and 512 * axis + sample in the first two words of each position */
+    HEWN_UINTS vertices; /* out: brick (packed) and sample + 512 * axis + 2048 * brick, that in seven bits an axis, in
+                            the first two words of each position */
     HEWN_UINTS indices;  /* out: slot, sample + 512 * pattern + 131072 * triangle in each triangle's first two words */
 };
+
+/* Where no side has more cells, a brick's coordinates fit seven bits each. */
+#define HEWN_SHORT_CELLS 1024u
 
 /* Vertices that an invocation solves one after the other. */
 #define HEWN_VERTICES_EACH 16u
@@ -142,7 +146,8 @@ struct hewn_vertex_push {
 #define HEWN_SUMMARY_CORNERS 3u  /* at corners, */
 #define HEWN_SUMMARY_PLANES 4u   /* planes found that no crossing had seen, */
 #define HEWN_SUMMARY_LOST 5u     /* vertices still off the surface */
-#define HEWN_SUMMARY_WORDS 6u
+#define HEWN_SUMMARY_CUT 6u      /* not 0: loops ended before they were done, see shaders/iso/whole_loops.h */
+#define HEWN_SUMMARY_WORDS 7u
 
 struct hewn_triangle_push {
     HEWN_UINT count;

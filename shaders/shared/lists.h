@@ -48,7 +48,9 @@ struct hewn_listed_vertex_push {
     HEWN_GRID grid;
     HEWN_UINT count; /* bricks */
     HEWN_UINT vertex_count;
-    HEWN_UINT dual; /* as in hewn_vertex_push */
+    HEWN_UINT dual;       /* as in hewn_vertex_push */
+    HEWN_UINT first_turn; /* of a brick's vertices those that are solved in these turns, 32 in each */
+    HEWN_UINT turns;
     HEWN_UINT pad;
     HEWN_UINTS bricks;
     HEWN_UINTS vertex_bases;

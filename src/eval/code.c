@@ -277,7 +277,7 @@ void hewn_code_destroy(hewn_device *device, hewn_code **code)
 static hewn_result same_text(const hewn_listing *a, const hewn_listing *b, bool *same, hewn_error *error)
 {
     const uint32_t all = HEWN_FLAVOUR_POINT | HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_ROW |
-                         HEWN_FLAVOUR_NEAR; /* which tells most: what is sure depends on numbers */
+                         HEWN_FLAVOUR_ALONG | HEWN_FLAVOUR_NEAR; /* which tells most: what is sure depends on numbers */
     hewn_text texts[2] = {{0}, {0}};
     hewn_listing_write(a, all, &texts[0]);
     hewn_listing_write(b, all, &texts[1]);
@@ -414,7 +414,7 @@ static void write_kernel(const hewn_code *code, const hewn_kernel_desc *desc, he
     bool narrows = how.together && (desc->flavours & (HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_ROW));
     if (narrows || desc->flavours & (HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_CHOICES))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_INTERVAL, text);
-    if (desc->flavours & (HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_FOUR))
+    if (desc->flavours & (HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_ALONG))
         hewn_library_write(&code->library, code->choice, HEWN_LIBRARY_GRADIENT, text);
     if (!code->listed) {
         hewn_listing_write(&code->listing, desc->flavours, text);

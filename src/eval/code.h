@@ -22,6 +22,10 @@ typedef enum hewn_flavour {
                                     the same time */
     HEWN_FLAVOUR_NEAR =
         256, /* no coordinate is larger than HEWN_REACH: what is never NaN there is not asked whether it is */
+    HEWN_FLAVOUR_ALONG = 512, /* in straight code: places that differ along one axis from one that is told first by
+                                 void field_stand(vec3 start, uint axis). float field_along(float at) is field_point()
+                                 where that coordinate is `at`, and vec4 field_slope_along(float at) field_gradient(),
+                                 but for signs of zeros. What does not depend on the axis is evaluated once. */
     HEWN_FLAVOUR_ROW = 8 /* uint field_row_inside(uint i, float y, float z): bit k set where field_point(sample_x(i +
                             k), y, z) < 0, k = 0..7. The kernel declares `float sample_x(uint i);` before the field's
                             code and defines it. What does not depend on x is evaluated once a row. */

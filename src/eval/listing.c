@@ -176,6 +176,8 @@ hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn
     HEWN_TRY(hewn_field_live_nodes(field, root, &ids, &count, error));
     hewn_result result = fill(out, field, ids, count, error);
     hewn_free(ids);
+    if (result == HEWN_OK)
+        result = hewn_listing_part(out, error);
     if (result != HEWN_OK)
         hewn_listing_destroy(out);
     return result;
@@ -232,8 +234,6 @@ uint32_t hewn_listing_weight(const hewn_code_step *step)
 
 /* --- text -------------------------------------------------------------------------------------------------------- */
 
-typedef enum listing_flavour { POINT, INTERVAL, GRADIENT } listing_flavour;
-
 static const char *const types[] = {"float", "vec2", "vec4"};
 
 static void write_number(const hewn_listing *listing, uint32_t i, hewn_text *text)
@@ -253,20 +253,29 @@ static void write_number(const hewn_listing *listing, uint32_t i, hewn_text *tex
     }
 }
 
-static void write_operand(const hewn_listing *listing, uint32_t at, listing_flavour flavour, bool plain,
+/* What depends on y and not on x there is four times, where rows are written side by side. */
+static void write_row_of(const hewn_listing *listing, const hewn_code_step *step, hewn_text *text)
+{
+    if (listing->row > 0 && (step->axes & (HEWN_AXIS_X | HEWN_AXIS_Y)) == HEWN_AXIS_Y)
+        hewn_text_print(text, "[%u]", listing->row - 1);
+}
+
+static void write_operand(const hewn_listing *listing, uint32_t at, hewn_listing_flavour flavour, bool plain,
                           hewn_text *text)
 {
     const hewn_code_step *step = &listing->steps[at];
     if (step->op <= HEWN_OP_Z) {
         hewn_text_append_bytes(text, &"xyz"[step->op - HEWN_OP_X], 1);
+        write_row_of(listing, step, text);
     } else if (step->op == HEWN_OP_CONSTANT) {
         static const char *const openings[] = {"", "f_number(", "vec4(vec3(0.0),"};
-        listing_flavour form = plain ? POINT : flavour;
+        hewn_listing_flavour form = plain ? HEWN_LISTING_POINT : flavour;
         hewn_text_append(text, openings[form]);
         write_number(listing, step->parameter, text);
-        hewn_text_append(text, form == POINT ? "" : ")");
+        hewn_text_append(text, form == HEWN_LISTING_POINT ? "" : ")");
     } else {
         hewn_text_print(text, "n%u", at);
+        write_row_of(listing, step, text);
     }
 }
 
@@ -285,7 +294,7 @@ bool hewn_listing_needs_guard(const hewn_listing *listing, const hewn_code_step 
     return !step->sure && !guards_itself(step->op);
 }
 
-static void write_operands(const hewn_listing *listing, const hewn_code_step *step, listing_flavour flavour,
+static void write_operands(const hewn_listing *listing, const hewn_code_step *step, hewn_listing_flavour flavour,
                            bool always_whole, hewn_text *text)
 {
     for (uint32_t i = 0; i < step->in_count; i++) {
@@ -295,17 +304,19 @@ static void write_operands(const hewn_listing *listing, const hewn_code_step *st
     }
 }
 
-static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour flavour, hewn_text *text)
+static void write_step(const hewn_listing *listing, uint32_t at, hewn_listing_flavour flavour, hewn_text *text)
 {
     const hewn_code_step *step = &listing->steps[at];
     if (!step->function)
         return;
-    bool guard = flavour == INTERVAL && hewn_listing_needs_guard(listing, step);
-    bool known = flavour != INTERVAL && listing->near && step->sure;
+    bool guard = flavour == HEWN_LISTING_INTERVAL && hewn_listing_needs_guard(listing, step);
+    bool known = flavour != HEWN_LISTING_INTERVAL && listing->near && step->sure;
     const char *function = known && step->op == HEWN_OP_MIN   ? "lesser"
                            : known && step->op == HEWN_OP_MAX ? "greater"
                                                               : step->function;
-    hewn_text_print(text, "n%u=%sf_%s(", at, guard ? "f_guard(" : "", function);
+    hewn_text_print(text, "n%u", at);
+    write_row_of(listing, step, text);
+    hewn_text_print(text, "=%sf_%s(", guard ? "f_guard(" : "", function);
     write_operands(listing, step, flavour, false, text);
     for (uint32_t i = 0; i < step->parameter_count; i++) {
         hewn_text_append(text, ",");
@@ -318,26 +329,43 @@ static void write_step(const hewn_listing *listing, uint32_t at, listing_flavour
     hewn_text_append(text, ");\n");
 }
 
-/* The steps (only those with x, only those without, or all) in groups: Mesa inlines a call by
- * moving all that follows it in its block, so thousands of calls in one block take minutes. The condition that keeps
- * the groups apart until then is a specialization constant, true, which no front end folds and every driver does. */
-static void write_steps(const hewn_listing *listing, listing_flavour flavour, bool only, bool with_x, hewn_text *text)
+static bool has_x(const hewn_code_step *step)
 {
-    enum { GROUP = 32 };
+    return (step->axes & HEWN_AXIS_X) != 0;
+}
+
+static bool has_no_x(const hewn_code_step *step)
+{
+    return (step->axes & HEWN_AXIS_X) == 0;
+}
+
+enum { GROUP = 32 };
+
+static void declare_steps(const hewn_listing *listing, hewn_listing_flavour flavour, hewn_step_filter wanted,
+                          const char *suffix, hewn_text *text)
+{
     uint32_t written = 0;
     for (size_t i = 0; i < listing->count; i++) {
         const hewn_code_step *step = &listing->steps[i];
-        if (!step->function || (only && with_x != ((step->axes & HEWN_AXIS_X) != 0)))
+        if (!step->function || (wanted && !wanted(step)))
             continue;
-        hewn_text_print(text, "%s n%zu", written++ % GROUP == 0 ? types[flavour] : ",", i);
+        hewn_text_print(text, "%s n%zu%s", written++ % GROUP == 0 ? types[flavour] : ",", i, suffix);
         if (written % GROUP == 0)
             hewn_text_append(text, ";\n");
     }
     hewn_text_append(text, written % GROUP == 0 ? "" : ";\n");
-    written = 0;
+}
+
+/* In groups: Mesa inlines a call by moving all that follows it in its block, so thousands of calls in one block take
+ * minutes. The condition that keeps the groups apart until then is a specialization constant, true, which no front end
+ * folds and every driver does. */
+static void compute_steps(const hewn_listing *listing, hewn_listing_flavour flavour, hewn_step_filter wanted,
+                          hewn_text *text)
+{
+    uint32_t written = 0;
     for (size_t i = 0; i < listing->count; i++) {
         const hewn_code_step *step = &listing->steps[i];
-        if (!step->function || (only && with_x != ((step->axes & HEWN_AXIS_X) != 0)))
+        if (!step->function || (wanted && !wanted(step)))
             continue;
         if (written++ % GROUP == 0)
             hewn_text_append(text, written > 1 ? "}\nif(f_always){\n" : "if(f_always){\n");
@@ -346,45 +374,129 @@ static void write_steps(const hewn_listing *listing, listing_flavour flavour, bo
     hewn_text_append(text, written > 0 ? "}\n" : "");
 }
 
-static void write_function(const hewn_listing *listing, listing_flavour flavour, const char *opening, hewn_text *text)
+void hewn_listing_write_steps(const hewn_listing *listing, hewn_listing_flavour flavour, hewn_step_filter wanted,
+                              hewn_text *text)
+{
+    declare_steps(listing, flavour, wanted, "", text);
+    compute_steps(listing, flavour, wanted, text);
+}
+
+void hewn_listing_write_root(const hewn_listing *listing, hewn_listing_flavour flavour, hewn_text *text)
+{
+    write_operand(listing, (uint32_t)(listing->count - 1), flavour, false, text);
+}
+
+static void write_function(const hewn_listing *listing, hewn_listing_flavour flavour, const char *opening,
+                           hewn_text *text)
 {
     hewn_text_append(text, opening);
-    write_steps(listing, flavour, false, false, text);
-    hewn_text_append(text, flavour == INTERVAL ? "return f_result(" : "return ");
-    write_operand(listing, (uint32_t)(listing->count - 1), flavour, false, text);
-    hewn_text_append(text, flavour == INTERVAL ? ",x,y,z);\n}\n" : ";\n}\n");
+    hewn_listing_write_steps(listing, flavour, NULL, text);
+    hewn_text_append(text, flavour == HEWN_LISTING_INTERVAL ? "return f_result(" : "return ");
+    hewn_listing_write_root(listing, flavour, text);
+    hewn_text_append(text, flavour == HEWN_LISTING_INTERVAL ? ",x,y,z);\n}\n" : ";\n}\n");
 }
 
 /* What does not depend on x comes before the loop over the row's samples. */
 static void write_row(const hewn_listing *listing, hewn_text *text)
 {
     hewn_text_append(text, "uint field_row_inside(uint i, float y, float z)\n{\n");
-    write_steps(listing, POINT, true, false, text);
+    hewn_listing_write_steps(listing, HEWN_LISTING_POINT, has_no_x, text);
     hewn_text_append(text, "uint bits = 0u;\nfor (uint k = 0u; k < 8u; k++) {\nfloat x = sample_x(i + k);\n");
-    write_steps(listing, POINT, true, true, text);
+    hewn_listing_write_steps(listing, HEWN_LISTING_POINT, has_x, text);
     hewn_text_append(text, "bits |= uint(");
-    write_operand(listing, (uint32_t)(listing->count - 1), POINT, false, text);
+    hewn_listing_write_root(listing, HEWN_LISTING_POINT, text);
     hewn_text_append(text, " < 0.0) << k;\n}\nreturn bits;\n}\n");
+}
+
+/* --- words of four rows ------------------------------------------------------------------------------------------- */
+
+static bool has_x_alone(const hewn_code_step *step)
+{
+    return (step->axes & (HEWN_AXIS_X | HEWN_AXIS_Y)) == HEWN_AXIS_X;
+}
+
+static bool has_y_alone(const hewn_code_step *step)
+{
+    return (step->axes & (HEWN_AXIS_X | HEWN_AXIS_Y)) == HEWN_AXIS_Y;
+}
+
+static bool has_both(const hewn_code_step *step)
+{
+    return (step->axes & HEWN_AXIS_X) && (step->axes & HEWN_AXIS_Y);
+}
+
+static bool has_neither(const hewn_code_step *step)
+{
+    return !(step->axes & (HEWN_AXIS_X | HEWN_AXIS_Y));
+}
+
+/* Side by side, four rows share what does not depend on y, and need the code of what does four times. */
+static bool rows_share(const hewn_listing *listing)
+{
+    enum { MOST_CODE = 400 };
+    uint64_t shared = 0, own = 0, code = 0;
+    for (size_t i = 0; i < listing->count; i++) {
+        const hewn_code_step *step = &listing->steps[i];
+        uint32_t weight = hewn_listing_weight(step);
+        shared += has_x_alone(step) ? weight : 0;
+        own += has_both(step) ? weight : 0;
+        code += step->axes & HEWN_AXIS_Y ? weight : 0;
+    }
+    return shared >= own && code <= MOST_CODE;
+}
+
+/* Four rows, the places along which are walked once. */
+static void write_rows_together(const hewn_listing *listing, hewn_text *text)
+{
+    hewn_listing view = *listing;
+    hewn_text_append(text, "uint field_word_inside(uint i, vec4 y, float z)\n{\nuint bits = 0u;\n");
+    hewn_listing_write_steps(&view, HEWN_LISTING_POINT, has_neither, text);
+    declare_steps(&view, HEWN_LISTING_POINT, has_y_alone, "[4]", text);
+    for (view.row = 1; view.row <= 4; view.row++)
+        compute_steps(&view, HEWN_LISTING_POINT, has_y_alone, text);
+    view.row = 0;
+    hewn_text_append(text, "for (uint k = 0u; k < 8u; k++) {\nfloat x = sample_x(i + k);\n");
+    hewn_listing_write_steps(&view, HEWN_LISTING_POINT, has_x_alone, text);
+    for (view.row = 1; view.row <= 4; view.row++) {
+        hewn_text_append(text, "{\n");
+        hewn_listing_write_steps(&view, HEWN_LISTING_POINT, has_both, text);
+        hewn_text_append(text, "bits |= uint(");
+        hewn_listing_write_root(&view, HEWN_LISTING_POINT, text);
+        hewn_text_print(text, " < 0.0) << (k + %uu);\n}\n", 8 * (view.row - 1));
+    }
+    hewn_text_append(text, "}\nreturn bits;\n}\n");
+}
+
+/* Four rows one after the other. */
+static void write_rows_in_turn(hewn_text *text)
+{
+    hewn_text_append(text, "uint field_word_inside(uint i, vec4 y, float z)\n{\nuint bits = 0u;\n"
+                           "for (uint k = 0u; k < 4u; k++)\n"
+                           "bits |= field_row_inside(i, k == 0u ? y.x : k == 1u ? y.y : k == 2u ? y.z : y.w, z) << "
+                           "8u * k;\nreturn bits;\n}\n");
 }
 
 void hewn_listing_write(const hewn_listing *listing, uint32_t flavours, hewn_text *text)
 {
     hewn_listing view = *listing;
     view.near = (flavours & HEWN_FLAVOUR_NEAR) != 0;
-    if (flavours & HEWN_FLAVOUR_POINT)
-        write_function(&view, POINT, "float field_point(float x, float y, float z)\n{\n", text);
+    bool along = (flavours & HEWN_FLAVOUR_ALONG) != 0;
+    if ((flavours & HEWN_FLAVOUR_POINT) || (along && !view.parted))
+        write_function(&view, HEWN_LISTING_POINT, "float field_point(float x, float y, float z)\n{\n", text);
     if (flavours & HEWN_FLAVOUR_INTERVAL)
-        write_function(&view, INTERVAL, "vec2 field_interval(vec2 x, vec2 y, vec2 z)\n{\n", text);
-    if (flavours & HEWN_FLAVOUR_GRADIENT)
-        write_function(&view, GRADIENT,
+        write_function(&view, HEWN_LISTING_INTERVAL, "vec2 field_interval(vec2 x, vec2 y, vec2 z)\n{\n", text);
+    if ((flavours & HEWN_FLAVOUR_GRADIENT) || (along && !view.parted))
+        write_function(&view, HEWN_LISTING_GRADIENT,
                        "vec4 field_gradient(float at_x, float at_y, float at_z)\n{\n"
                        "vec4 x=vec4(1.0,0.0,0.0,at_x),y=vec4(0.0,1.0,0.0,at_y),z=vec4(0.0,0.0,1.0,at_z);\n",
                        text);
-    if (flavours & (HEWN_FLAVOUR_ROW | HEWN_FLAVOUR_WORD))
+    if (along)
+        hewn_listing_write_along(&view, text);
+    bool word = (flavours & HEWN_FLAVOUR_WORD) != 0, together = word && rows_share(listing);
+    if ((flavours & HEWN_FLAVOUR_ROW) || (word && !together))
         write_row(&view, text);
-    if (flavours & HEWN_FLAVOUR_WORD)
-        hewn_text_append(text, "uint field_word_inside(uint i, vec4 y, float z)\n{\nuint bits = 0u;\n"
-                               "for (uint k = 0u; k < 4u; k++)\n"
-                               "bits |= field_row_inside(i, k == 0u ? y.x : k == 1u ? y.y : k == 2u ? y.z : y.w, z) << "
-                               "8u * k;\nreturn bits;\n}\n");
+    if (together)
+        write_rows_together(&view, text);
+    else if (word)
+        write_rows_in_turn(text);
 }

@@ -22,6 +22,10 @@ typedef struct hewn_code_step {
     double size;                         /* no value is larger, for coordinates up to HEWN_REACH */
     bool positive;                       /* no value is below 0, nor are the bounds that intervals give */
     bool sure; /* for such coordinates intervals are finite here and in all that it depends on: no NaN, no overflow */
+    /* For walks along one axis, see along.c: */
+    bool part;     /* it is evaluated anew at each place */
+    bool shown;    /* it depends on one variable, and steps of several use it (or it is the root) */
+    uint32_t same; /* of those shown: a part with the same function of its one variable */
 } hewn_code_step;
 
 typedef struct hewn_listing {
@@ -29,9 +33,14 @@ typedef struct hewn_listing {
     size_t count;
     float *parameters; /* rounded once; what is below the smallest normal number is 0 */
     size_t parameter_count;
-    bool fixed; /* numbers are written into the code */
-    bool near;  /* what is written is for coordinates up to HEWN_REACH: HEWN_FLAVOUR_NEAR */
+    bool fixed;   /* numbers are written into the code */
+    bool near;    /* what is written is for coordinates up to HEWN_REACH: HEWN_FLAVOUR_NEAR */
+    uint32_t row; /* while rows are written side by side: which one, from 1 on; else 0 */
+    bool parted;  /* walks along an axis pay, and the steps tell how */
 } hewn_listing;
+
+/* Finds what places along one axis share (along.c). */
+hewn_result hewn_listing_part(hewn_listing *listing, hewn_error *error);
 
 /* Fills in size, positive and sure from the operands' (reach.c). */
 void hewn_code_step_reach(const hewn_listing *listing, hewn_code_step *step);
@@ -51,6 +60,18 @@ bool hewn_listing_needs_guard(const hewn_listing *listing, const hewn_code_step 
 
 /* About how many instructions of a processor the step takes at a point. */
 uint32_t hewn_listing_weight(const hewn_code_step *step);
+
+/* What listing.c and along.c write with: a type, and steps that `wanted` picks, as declarations and statements. */
+typedef enum hewn_listing_flavour {
+    HEWN_LISTING_POINT,
+    HEWN_LISTING_INTERVAL,
+    HEWN_LISTING_GRADIENT
+} hewn_listing_flavour;
+typedef bool (*hewn_step_filter)(const hewn_code_step *step);
+void hewn_listing_write_steps(const hewn_listing *listing, hewn_listing_flavour flavour, hewn_step_filter wanted,
+                              hewn_text *text);
+void hewn_listing_write_root(const hewn_listing *listing, hewn_listing_flavour flavour, hewn_text *text);
+void hewn_listing_write_along(const hewn_listing *listing, hewn_text *text);
 
 /* Appends the functions of `flavours`; the library must precede. Parameter i is P(i), or, where numbers are `fixed`, a
  * literal. */

@@ -199,6 +199,27 @@ static hewn_result make_lists(list_run *run, uint64_t instructions, hewn_error *
     return HEWN_OK;
 }
 
+/* Signs walk a list about four times, and choices once: what is longer would not be walked to its end. */
+enum { LONGEST = 16000, MOST_INSTRUCTIONS = 60000 };
+
+static hewn_result check_length(uint64_t length, uint64_t most, hewn_error *error)
+{
+    return length <= most
+               ? HEWN_OK
+               : hewn_fail(error, HEWN_LIMIT,
+                           "%llu shapes matter in one place, more than the %llu that this device can look at",
+                           (unsigned long long)length, (unsigned long long)most);
+}
+
+static uint32_t longest_list(const list_level *level)
+{
+    const uint32_t *ranges = level->ranges->mapped;
+    uint32_t longest = 0;
+    for (uint64_t i = 0; i < level->kept; i++)
+        longest = ranges[2 * i + 1] > longest ? ranges[2 * i + 1] : longest;
+    return longest;
+}
+
 hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct hewn_grid *grid,
                                    const hewn_region *region, hewn_workspace *workspace, hewn_bricks *out,
                                    hewn_error *error)
@@ -209,6 +230,8 @@ hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct
     uint64_t count = (uint64_t)run.top[0] * run.top[1] * run.top[2];
     uint64_t words = (hewn_code_instruction_count(extractor->code) + 15) / 16 * count;
     memcpy(out->top, run.top, sizeof out->top);
+    if (extractor->on_host)
+        HEWN_TRY(check_length(hewn_code_instruction_count(extractor->code), MOST_INSTRUCTIONS, error));
     HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_DEVICE, &run.totals, error));
     HEWN_TRY(hewn_workspace_take(workspace, "totals", 16, HEWN_BUFFER_READBACK, &run.results, error));
     for (uint32_t i = 0; i < out->levels; i++, size /= HEWN_LEVEL_RATIO) {
@@ -227,6 +250,8 @@ hewn_result hewn_bricks_cull_lists(const hewn_extractor *extractor, const struct
         count = (uint64_t)64 * totals[0];
         words = (uint64_t)4 * totals[2] + count;
     }
+    out->longest = extractor->on_host ? longest_list(&run.level) : 0;
+    HEWN_TRY(check_length(out->longest, LONGEST, error));
     out->count = run.level.kept;
     out->list = run.level.list;
     return HEWN_OK;

@@ -308,6 +308,8 @@ static void read_summary(const uint32_t *words, hewn_emission *out)
     out->features_lost = words[HEWN_SUMMARY_LOST];
     memcpy(&out->max_residual, &words[HEWN_SUMMARY_RESIDUAL], sizeof out->max_residual);
     out->capped_crossings = words[HEWN_SUMMARY_WORDS + HEWN_SUMMARY_CAPS];
+    for (uint32_t i = 0; i < 3; i++)
+        out->cut = out->cut || words[i * HEWN_SUMMARY_WORDS + HEWN_SUMMARY_CUT] > 0;
 }
 
 hewn_result hewn_dual_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,

@@ -173,6 +173,8 @@ static hewn_result emit_into(hewn_extraction *run, const hewn_bricks *bricks, he
     else
         HEWN_TRY(hewn_surface_emit(run->extractor, &run->grid, bricks, surface, mesh->buffers, &run->workspace,
                                    &emission, error));
+    if (emission.cut)
+        return hewn_emission_fail_cut(error);
     note_emission(run->stats, &emission);
     run->stats->left_bounds = emission.capped_crossings > 0;
     return emission.capped_crossings == surface->crossing_count ? hewn_extraction_explain_empty(run, error) : HEWN_OK;

@@ -80,6 +80,7 @@ typedef struct hewn_bricks {
     uint32_t count;
     uint32_t levels;
     uint32_t top[3];         /* blocks of the coarsest level */
+    uint32_t longest;        /* most instructions in a brick's list, where the host makes the lists; else 0 */
     uint32_t beyond;         /* in: so many cells around the blocks above bricks lists of theirs are good for too */
     const hewn_buffer *list; /* packed coordinates */
     const hewn_buffer *states[HEWN_MAX_LEVELS]; /* coarsest first */
@@ -168,7 +169,11 @@ typedef struct hewn_emission {
     uint32_t capped_crossings; /* of the surface's */
     uint32_t edge_vertices, corner_vertices, planes_found, features_lost;
     float max_residual;
+    bool cut; /* the device ended loops early: what was made is wrong */
 } hewn_emission;
+
+/* The error for that. */
+hewn_result hewn_emission_fail_cut(hewn_error *error);
 
 /* Writes vertices and triangles into the three buffers. */
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,

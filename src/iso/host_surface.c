@@ -158,13 +158,14 @@ void hewn_host_surface_count(const hewn_host_surface *surface, uint32_t totals[4
 static void spread_brick(const hewn_host_surface *surface, uint32_t slot)
 {
     uint32_t vertex = surface->vertex_bases[slot], packed = surface->bricks[slot];
+    uint32_t short_brick = (packed & 127) | (packed >> 10 & 127) << 7 | (packed >> 20 & 127) << 14;
     uint32_t *pair = surface->edges + (uint64_t)2 * slot * HEWN_BRICK_EDGE_WORDS;
     for (uint32_t word = 0; word < HEWN_BRICK_EDGE_WORDS; word++, pair += 2) {
         pair[1] = vertex;
         for (uint32_t mask = pair[0]; mask != 0; mask &= mask - 1, vertex++) {
             uint32_t *record = surface->vertices + (uint64_t)3 * vertex;
             record[0] = packed;
-            record[1] = 32 * word + first_bit(mask);
+            record[1] = (32 * word + first_bit(mask)) | short_brick << 11;
         }
     }
 }

@@ -403,6 +403,9 @@ static hewn_result emit_into(stream *of, hewn_part *part, hewn_buffer buffers[3]
     naming names;
     limit_device(of, host);
     HEWN_TRY(hewn_part_emit(&of->run, part, buffers, &emission, error));
+    of->decided = emission.cut;
+    if (emission.cut)
+        return hewn_emission_fail_cut(error);
     HEWN_TRY(begin_naming(of, part, &names, error));
     hewn_result result = assemble(of, part, &names, buffers, &given, error);
     hewn_free(names.firsts);

@@ -165,6 +165,24 @@ hewn_own hewn_surface_own(const hewn_surface *surface)
                       .bases = {dual ? surface->crossing_bases : surface->vertex_bases}};
 }
 
+/* Turns of 32 vertices that an invocation may take of each brick, so that it gets by with the iterations that CPU
+ * drivers give it: a turn walks the list about twelve times. */
+static uint32_t turns_at_once(const hewn_bricks *bricks)
+{
+    enum { MOST_TURNS = 3 * 512 / 32, ITERATIONS = 40000, WALKS = 12 };
+    uint64_t a_turn = (uint64_t)WALKS * bricks->longest;
+    return a_turn * MOST_TURNS <= ITERATIONS ? MOST_TURNS : a_turn < ITERATIONS ? (uint32_t)(ITERATIONS / a_turn) : 1;
+}
+
+static void record_listed(const hewn_extractor *extractor, const hewn_bricks *bricks,
+                          struct hewn_listed_vertex_push *push, hewn_commands *commands)
+{
+    push->turns = turns_at_once(bricks);
+    for (; push->first_turn < 3 * 512 / 32; push->first_turn += push->turns)
+        hewn_commands_dispatch(commands, extractor->vertices, push, hewn_code_uniforms(extractor->code),
+                               hewn_groups_for((uint64_t)bricks->count * 8, 64));
+}
+
 void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                            const hewn_crossings *crossings, hewn_commands *commands)
 {
@@ -182,8 +200,7 @@ void hewn_crossings_record(const hewn_extractor *extractor, const struct hewn_gr
                                                .positions = crossings->positions->address,
                                                .normals = crossings->normals->address,
                                                .summary = crossings->summary};
-        hewn_commands_dispatch(commands, extractor->vertices, &push, uniforms,
-                               hewn_groups_for((uint64_t)bricks->count * 8, 64));
+        record_listed(extractor, bricks, &push, commands);
         return;
     }
     struct hewn_vertex_push push = {.grid = *grid,
@@ -248,6 +265,14 @@ static void emit_on_host(const struct hewn_grid *grid, const hewn_bricks *bricks
     hewn_host_surface_triangulate(&view, first, end, surface->triangle_count);
 }
 
+hewn_result hewn_emission_fail_cut(hewn_error *error)
+{
+    return hewn_fail(
+        error, HEWN_LIMIT,
+        "so many shapes matter in one place that this device gives up on it; smaller cells have fewer, and "
+        "the method mc takes more than the others");
+}
+
 hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                               const hewn_surface *surface, const hewn_buffer buffers[3], hewn_workspace *workspace,
                               hewn_emission *out, hewn_error *error)
@@ -272,7 +297,9 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
     hewn_commands_copy(commands, summary, 0, results, 0, summary->size);
     HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
     const uint32_t *words = results->mapped;
-    *out = (hewn_emission){.caps = words[HEWN_SUMMARY_CAPS], .capped_crossings = words[HEWN_SUMMARY_CAPS]};
+    *out = (hewn_emission){.caps = words[HEWN_SUMMARY_CAPS],
+                           .capped_crossings = words[HEWN_SUMMARY_CAPS],
+                           .cut = words[HEWN_SUMMARY_CUT] + words[HEWN_SUMMARY_WORDS + HEWN_SUMMARY_CUT] > 0};
     memcpy(&out->max_residual, &words[HEWN_SUMMARY_RESIDUAL], sizeof out->max_residual);
     return HEWN_OK;
 }

@@ -205,7 +205,8 @@ static void test_list_kernels(void **state)
           MEMBER(hewn_keep_push, choices, ADDRESS), MEMBER(hewn_keep_push, lists, ADDRESS),
           MEMBER(hewn_keep_push, ranges, ADDRESS));
     CHECK(hewn_listed_vertex_push, GRID(hewn_listed_vertex_push), MEMBER(hewn_listed_vertex_push, count, NUMBER),
-          MEMBER(hewn_listed_vertex_push, vertex_count, NUMBER), MEMBER(hewn_listed_vertex_push, bricks, ADDRESS),
+          MEMBER(hewn_listed_vertex_push, vertex_count, NUMBER), MEMBER(hewn_listed_vertex_push, first_turn, NUMBER),
+          MEMBER(hewn_listed_vertex_push, turns, NUMBER), MEMBER(hewn_listed_vertex_push, bricks, ADDRESS),
           MEMBER(hewn_listed_vertex_push, vertex_bases, ADDRESS), MEMBER(hewn_listed_vertex_push, positions, ADDRESS),
           MEMBER(hewn_listed_vertex_push, normals, ADDRESS), MEMBER(hewn_listed_vertex_push, summary, ADDRESS));
 }

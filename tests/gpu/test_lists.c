@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "eval/listing.h"
 #include "hewn/hewn.h"
 #include "iso/extractor.h"
 
@@ -285,12 +286,55 @@ static void odd_fields_are_straight_code(void **state)
     gpu_test_close(&device, &messages);
 }
 
+/* The distance of a coordinate to the nearest of some planes, and a wave of it. */
+static hewn_node comb(hewn_field *f, hewn_node t, int teeth)
+{
+    hewn_node nearest = hewn_abs(f, t);
+    for (int i = 1; i < teeth; i++)
+        nearest = hewn_min(f, nearest, hewn_abs(f, hewn_sub(f, t, hewn_constant(f, 0.31 * i - 0.8))));
+    return nearest;
+}
+
+/* Straight code shares what depends on one coordinate along an edge, lists do not. One part is y's alone. */
+static void axes_that_share_parts_are_straight_code(void **state)
+{
+    (void)state;
+    unsigned messages;
+    hewn_device *device = gpu_test_open(&messages);
+    for (int which = 0; which < 2; which++) {
+        shrub made;
+        hewn_listing listing;
+        GPU_TEST_TRY(hewn_field_create(&made.field, &error));
+        hewn_field *f = made.field;
+        hewn_node at[3] = {hewn_x(f), hewn_y(f), hewn_z(f)}, combs[3], sines[3], sizes[3];
+        for (int k = 0; k < 3; k++) {
+            combs[k] = comb(f, at[k], 9);
+            sines[k] = hewn_sin(f, hewn_mul(f, at[k], hewn_constant(f, 5)));
+            sizes[k] = hewn_abs(f, at[k]);
+        }
+        hewn_node bars = hewn_min(f, hewn_max(f, combs[0], combs[1]),
+                                  hewn_min(f, hewn_max(f, combs[1], combs[2]), hewn_max(f, combs[2], combs[0])));
+        hewn_node waves = hewn_add(f, hewn_mul(f, sines[0], sines[1]), hewn_mul(f, sines[1], sines[2]));
+        hewn_node cube = hewn_sub(f, hewn_max(f, sizes[0], hewn_max(f, sizes[1], sizes[2])), hewn_constant(f, 0.93));
+        hewn_node own = hewn_mul(f, hewn_exp(f, at[1]), hewn_constant(f, 0.01));
+        made.root = hewn_max(f, cube, hewn_sub(f, hewn_add(f, bars, which == 0 ? own : waves), hewn_constant(f, 0.07)));
+        GPU_TEST_TRY(hewn_field_status(f, &error));
+        GPU_TEST_TRY(hewn_listing_create(&listing, f, made.root, &error));
+        assert_true(listing.parted);
+        hewn_listing_destroy(&listing);
+        check_against_straight(device, &made, 40, HEWN_METHOD_DC, which == 0 ? "bars" : "waves");
+        hewn_field_destroy(&made.field);
+    }
+    gpu_test_close(&device, &messages);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pruned_trees_are_whole_ones),
         cmocka_unit_test(lists_are_straight_code),
         cmocka_unit_test(odd_fields_are_straight_code),
+        cmocka_unit_test(axes_that_share_parts_are_straight_code),
     };
     return cmocka_run_group_tests_name("lists", tests, NULL, NULL);
 }
