@@ -34,8 +34,8 @@ vec2 side(float from, float along, float a, float b)
     return vec2(min(p, q) - error, max(p, q) + error);
 }
 
-/* How a march goes on from t. Of the last step `sure` is known to be free whatever is at t; `free` is how much the sphere
- * says that it began in, and `lean` how fast values changed along it, over the greatest slope. */
+/* How a march goes on from t. Of the last step `sure` is known to be free whatever is at t; `free` is how much the
+ * sphere says that it began in, and `lean` how fast values changed along it, over the greatest slope. */
 struct March {
     float t, stride, sure, free, lean;
     bool met;
