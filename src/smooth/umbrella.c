@@ -71,15 +71,15 @@ hewn_result hewn_smooth_umbrella(smooth_work *work, hewn_error *error)
  * was o at the start. Then p becomes q - (push * pull + (1 - push) * mean of the neighbours' pulls). */
 typedef struct hc_state {
     smooth_work work;
-    const double *start;
+    const double *start; /* NULL where `original` is 0 */
     double original, push, *pull;
 } hc_state;
 
 /* Where the pull of a vertex is counted from. */
 static inline double hc_origin(const hc_state *state, size_t i)
 {
-    return state->original > 0 ? state->original * state->start[i] + (1 - state->original) * state->work.at[i]
-                               : state->work.at[i];
+    return state->start ? state->original * state->start[i] + (1 - state->original) * state->work.at[i]
+                        : state->work.at[i];
 }
 
 static void measure_pull(const hc_state *all)
