@@ -2,46 +2,17 @@
  * on every face, the same number of triangles; and what the mesh promises: closed, manifold, on the surface, the same
  * bytes each time. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
 
 #include "../oracle/cuts.h"
 #include "eval/code.h"
+#include "gpu_test_device.h"
 #include "hewn/hewn.h"
 #include "iso/grid.h"
-
-static hewn_device *device;
 
 static void must(hewn_result result, const hewn_error *error)
 {
     if (result != HEWN_OK)
         fail_msg("%s", error->message);
-}
-
-static int open_device(void **state)
-{
-    (void)state;
-    hewn_error error = {0};
-    hewn_device_desc desc = {.validation = true};
-    if (hewn_device_create(&desc, &device, &error) != HEWN_OK) {
-        print_error("%s\n", error.message);
-        return -1;
-    }
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    uint64_t messages = hewn_device_message_count(device);
-    hewn_device_destroy(&device);
-    return messages == 0 ? 0 : -1;
 }
 
 /* --- fields ------------------------------------------------------------------------------------------------------ */

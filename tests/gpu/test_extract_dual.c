@@ -2,26 +2,9 @@
  * twin that traces the same signs; closed manifolds of whatever field, or open ones that end on the bounds. */
 #include "../oracle/dual.h"
 #include "eval/code.h"
-#include "gpu_test.h"
+#include "gpu_test_device.h"
 #include "iso/extractor.h"
 #include "random_fields.h"
-
-static hewn_device *device;
-static unsigned messages;
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = gpu_test_open(&messages);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    gpu_test_close(&device, &messages);
-    return 0;
-}
 
 typedef struct subject {
     hewn_field *field;

@@ -5,29 +5,12 @@
 #include <string.h>
 
 #include "gpu/device.h"
-#include "gpu_test.h"
+#include "gpu_test_device.h"
 #include "hewn/hewn.h"
 
 /* All methods: what is tested here must hold for each. */
 static const hewn_method methods[] = {HEWN_METHOD_MARCHING_CUBES, HEWN_METHOD_MC33, HEWN_METHOD_NETS, HEWN_METHOD_DC};
 enum { METHODS = sizeof methods / sizeof *methods };
-
-static hewn_device *device;
-static unsigned messages;
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = gpu_test_open(&messages);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    gpu_test_close(&device, &messages);
-    return 0;
-}
 
 typedef hewn_node maker(hewn_field *field);
 

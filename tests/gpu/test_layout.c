@@ -1,16 +1,8 @@
 /* Structs that cross from C to the device: every member is where both think it is. The host fills push constants with
  * each word's own number; a shader reads each member and writes back what it saw, which must be the member's offset in
  * C. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "base/text.h"
-#include "gpu/gpu.h"
+#include "gpu_test_device.h"
 #include "shared/iso.h"
 #include "shared/lists.h"
 #include "shared/query.h"
@@ -35,23 +27,6 @@ typedef struct member {
     MEMBER(type, grid.origin[0], REAL), MEMBER(type, grid.origin[2], REAL), MEMBER(type, grid.far[0], REAL),           \
         MEMBER(type, grid.far[2], REAL), MEMBER(type, grid.cell, REAL), MEMBER(type, grid.cells[0], NUMBER),           \
         MEMBER(type, grid.cells[2], NUMBER), MEMBER(type, grid.open, NUMBER), MEMBER(type, grid.rim, NUMBER)
-
-static hewn_device *device;
-
-static int open_device(void **state)
-{
-    (void)state;
-    hewn_device_desc desc = {.validation = true};
-    return hewn_device_create(&desc, &device, NULL) == HEWN_OK ? 0 : -1;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    uint64_t messages = hewn_device_message_count(device);
-    hewn_device_destroy(&device);
-    return messages == 0 ? 0 : -1;
-}
 
 static void write_shader(hewn_text *glsl, const char *head, const char *type, const member *members, size_t count)
 {

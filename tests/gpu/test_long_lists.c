@@ -3,28 +3,11 @@
 #include <stdlib.h>
 
 #include "eval/lists.h"
-#include "gpu_test.h"
+#include "gpu_test_device.h"
 #include "hewn/hewn.h"
 #include "iso/extractor.h"
 
 enum { CROWD = 4000 };
-
-static hewn_device *device;
-static unsigned messages;
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = gpu_test_open(&messages);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    gpu_test_close(&device, &messages);
-    return 0;
-}
 
 /* Boxes so much alike that no interval tells them apart, so that all of them matter everywhere. */
 static hewn_extractor *make_crowd(int count, hewn_evaluation evaluation)

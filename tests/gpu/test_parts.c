@@ -6,15 +6,12 @@
 
 #include "eval/lists.h"
 #include "gpu/device.h"
-#include "gpu_test.h"
+#include "gpu_test_device.h"
 #include "hewn/hewn.h"
 #include "iso/extractor.h"
 
 static const hewn_method methods[] = {HEWN_METHOD_MARCHING_CUBES, HEWN_METHOD_MC33, HEWN_METHOD_NETS, HEWN_METHOD_DC};
 enum { METHODS = sizeof methods / sizeof *methods };
-
-static hewn_device *device;
-static unsigned messages;
 
 /* --- the heap under watch ----------------------------------------------------------------------------------------- */
 
@@ -123,20 +120,6 @@ static void watch_no_more(void)
 {
     heap.on = false;
     device->vk.AllocateMemory = real_allocate;
-}
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = gpu_test_open(&messages);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    gpu_test_close(&device, &messages);
-    return 0;
 }
 
 /* --- fields ------------------------------------------------------------------------------------------------------- */

@@ -2,32 +2,16 @@
  * evaluates, and there is some at `high`; and both bound the same number. */
 #include <math.h>
 
-#include "gpu_test.h"
+#include "gpu_test_device.h"
 #include "hewn/query.h"
 #include "random_fields.h"
 
 enum { COUNT = 24, SAMPLES = 300 };
 #define TOLERANCE 0.004
 
-static hewn_device *device;
-static unsigned messages;
 static uint64_t state_of_random = 77;
 
 static const hewn_box box = {{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}};
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = gpu_test_open(&messages);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    gpu_test_close(&device, &messages);
-    return 0;
-}
 
 static double uniform(void)
 {

@@ -2,31 +2,14 @@
 #include <math.h>
 
 #include "eval/code.h"
-#include "gpu_test.h"
+#include "gpu_test_device.h"
 #include "hewn/render.h"
 #include "hewn/scene.h"
 #include "random_fields.h"
 
 enum { SIDE = 48, STEPS = 3000 };
 
-static hewn_device *device;
-static unsigned messages;
-
 static const hewn_box box = {{-1, -1, -1}, {1, 1, 1}};
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = gpu_test_open(&messages);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    gpu_test_close(&device, &messages);
-    return 0;
-}
 
 /* Twisted bars: steep far from the axis, and without a bound on the slope that the renderer knows. */
 static hewn_node make_twist(hewn_field *field, uint32_t seed)

@@ -4,26 +4,9 @@
 #include <string.h>
 
 #include "../oracle/remote.h"
-#include "gpu_test.h"
+#include "gpu_test_device.h"
 #include "hewn/hewn.h"
 #include "iso/extractor.h"
-
-static hewn_device *device;
-static unsigned messages;
-
-static int open_device(void **state)
-{
-    (void)state;
-    device = gpu_test_open(&messages);
-    return 0;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    gpu_test_close(&device, &messages);
-    return 0;
-}
 
 typedef struct subject {
     hewn_field *field;
