@@ -20,6 +20,14 @@ bool holds(vec3 p)
     return all(greaterThanEqual(p, box_lo)) && all(lessThanEqual(p, box_hi));
 }
 
+/* Slopes are bounded only so far around: past that the field's value says nothing about lengths. */
+bool in_wide_box(vec3 p)
+{
+    vec3 lo = vec3(push.wide_lo[0], push.wide_lo[1], push.wide_lo[2]);
+    vec3 hi = vec3(push.wide_hi[0], push.wide_hi[1], push.wide_hi[2]);
+    return all(greaterThanEqual(p, lo)) && all(lessThanEqual(p, hi));
+}
+
 /* The first of eight places along a ray's part where the field is 0 or below, then halved; FAR_AWAY for none. */
 float find_entry(Question q, float enter, float leave)
 {
@@ -164,7 +172,7 @@ void main()
     float known = 0.0, far = 0.0;
     for (uint axis = 0u; axis < 3u; axis++)
         far = max(far, max(abs(start[axis]), max(abs(push.lo[axis]), abs(push.hi[axis]))));
-    float steepness = holds(start) ? push.steepness : push.wide_steepness;
+    float steepness = holds(start) ? push.steepness : in_wide_box(start) ? push.wide_steepness : 0.0;
     if (steepness > 0.0 && abs(value) < FAR_AWAY)
         known = max(0.0, ((abs(value) - 3.9e-6 * far) / steepness - q.radius) * 0.999999);
     if (q.kind != HEWN_QUERY_NEAREST) {

@@ -117,6 +117,8 @@ static struct hewn_query_push make_push(const hewn_query *query, const hewn_quer
     for (int axis = 0; axis < 3; axis++) {
         push.lo[axis] = query->octree.cells->lo[axis];
         push.hi[axis] = query->octree.cells->hi[axis];
+        push.wide_lo[axis] = (float)query->wide.lo[axis];
+        push.wide_hi[axis] = (float)query->wide.hi[axis];
     }
     push.steepness = isfinite(query->steepness) ? nextafterf((float)query->steepness, INFINITY) : 0;
     push.wide_steepness = isfinite(query->wide_steepness) ? nextafterf((float)query->wide_steepness, INFINITY) : 0;

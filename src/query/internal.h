@@ -18,7 +18,7 @@ struct hewn_query {
     hewn_box box;
     double diagonal;
     double steepness; /* no slope in the box is more; infinite where none is known */
-    hewn_box wide;    /* the same for a box with much room around */
+    hewn_box wide;    /* the same for a box with much room around, of numbers of single precision */
     double wide_steepness;
     float fine; /* shorter than this nothing is told apart, because coordinates are rounded */
     hewn_octree octree;

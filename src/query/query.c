@@ -27,9 +27,14 @@ static hewn_result check_box(const hewn_box *box, hewn_error *error)
     return HEWN_OK;
 }
 
+/* Boxes contain what they are in single precision: slopes are bounded wherever a rounded point may be. */
 static void measure(hewn_query *query)
 {
     double square = 0, far = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        query->box.lo[axis] = fmin(query->box.lo[axis], (double)(float)query->box.lo[axis]);
+        query->box.hi[axis] = fmax(query->box.hi[axis], (double)(float)query->box.hi[axis]);
+    }
     for (int axis = 0; axis < 3; axis++) {
         double side = query->box.hi[axis] - query->box.lo[axis];
         square += side * side;
@@ -38,8 +43,8 @@ static void measure(hewn_query *query)
     query->diagonal = sqrt(square);
     query->fine = (float)(FINE * fmax(query->diagonal, far));
     for (int axis = 0; axis < 3; axis++) {
-        query->wide.lo[axis] = query->box.lo[axis] - ROOM * query->diagonal;
-        query->wide.hi[axis] = query->box.hi[axis] + ROOM * query->diagonal;
+        query->wide.lo[axis] = (double)(float)(query->box.lo[axis] - ROOM * query->diagonal);
+        query->wide.hi[axis] = (double)(float)(query->box.hi[axis] + ROOM * query->diagonal);
     }
 }
 

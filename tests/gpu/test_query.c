@@ -176,14 +176,56 @@ static void test_without_slopes(void **state)
     check_field(make_waves_in_ball, 1);
 }
 
-/* What the device cannot finish in the steps that it has is finished by the host: the middle of a ball without slope.
- */
 static hewn_node squares(hewn_field *field)
 {
     hewn_node sum = hewn_add(field, hewn_square(field, hewn_x(field)), hewn_square(field, hewn_y(field)));
     return hewn_sub(field, hewn_add(field, sum, hewn_square(field, hewn_z(field))), hewn_constant(field, 0.81));
 }
 
+/* Far from the box slopes are not bounded, and what is known of them near it proves nothing. */
+static void test_far_points(void **state)
+{
+    (void)state;
+    enum { FAR = 32 };
+    hewn_field *field;
+    hewn_query *query;
+    hewn_answer answers[FAR], met[FAR];
+    hewn_ray_desc rays[FAR];
+    double points[FAR][3], expected[FAR];
+    const double diagonal = apart(box.lo, box.hi), away[4] = {20, 60, 1000, 25000};
+    const hewn_query_desc desc = {.tolerance = TOLERANCE};
+    for (int i = 0; i < FAR; i++) {
+        random_direction(points[i]);
+        for (int axis = 0; axis < 3; axis++) {
+            points[i][axis] *= away[i % 4] * diagonal;
+            rays[i].along[axis] = -points[i][axis];
+            rays[i].from[axis] = points[i][axis];
+        }
+        rays[i].begin = rays[i].end = rays[i].radius = 0;
+        expected[i] = away[i % 4] * diagonal - 0.9;
+    }
+    assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+    hewn_node root = squares(field);
+    for (int host = 0; host < 2; host++) {
+        GPU_TEST_TRY(hewn_query_create(host ? NULL : device, field, root, &box, &query, &error));
+        GPU_TEST_TRY(hewn_query_nearest(query, points[0], FAR, &desc, answers, &error));
+        GPU_TEST_TRY(hewn_query_rays(query, rays, FAR, &desc, met, &error));
+        for (int i = 0; i < FAR; i++) {
+            const hewn_answer *both[2] = {&answers[i], &met[i]};
+            double doubt = 1e-6 * expected[i]; /* single precision, so far out */
+            for (int k = 0; k < 2; k++)
+                if (!both[k]->found || both[k]->low > expected[i] + doubt || both[k]->high < expected[i] - doubt ||
+                    both[k]->high > expected[i] + 10 * doubt + TOLERANCE)
+                    fail_msg("%s, %s %d: %.9g to %.9g instead of %.9g", host ? "host" : "device", k ? "ray" : "point",
+                             i, both[k]->low, both[k]->high, expected[i]);
+        }
+        hewn_query_destroy(&query);
+    }
+    hewn_field_destroy(&field);
+}
+
+/* What the device cannot finish in the steps that it has is finished by the host: the middle of a ball without slope.
+ */
 static void test_many_alike(void **state)
 {
     (void)state;
@@ -229,10 +271,8 @@ static void test_large_fields(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_trees),
-        cmocka_unit_test(test_without_slopes),
-        cmocka_unit_test(test_many_alike),
-        cmocka_unit_test(test_large_fields),
+        cmocka_unit_test(test_trees),      cmocka_unit_test(test_without_slopes), cmocka_unit_test(test_far_points),
+        cmocka_unit_test(test_many_alike), cmocka_unit_test(test_large_fields),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
 }
