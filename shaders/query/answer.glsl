@@ -89,10 +89,9 @@ void take(float t, vec3 p, vec3 n)
     normal = n;
 }
 
-/* Looks for a place in a box that is better than all so far; false where none was found. */
-bool look(Question q, vec3 lo, vec3 hi)
+/* Looks for a place in a box that is better than all so far. What is found need not be the best there. */
+void look(Question q, vec3 lo, vec3 hi)
 {
-    float before = high;
     if (q.kind == HEWN_QUERY_RAY) {
         float leave, enter = box_enter(q, lo, hi, 0.0, leave);
         float t = enter < high ? find_entry(q, enter, leave) : FAR_AWAY;
@@ -110,7 +109,6 @@ bool look(Question q, vec3 lo, vec3 hi)
             most = 2.0 * length(aside);
         }
     }
-    return high < before;
 }
 
 /* Walks through the octree down to a level. What is not looked into because it cannot be better counts for `low` all
@@ -146,13 +144,13 @@ bool search(Question q, float known, uint levels)
         vec2 range = field_interval(vec2(lo.x, hi.x), vec2(lo.y, hi.y), vec2(lo.z, hi.z));
         if (range.x > 0.0 || (range.y < 0.0 && q.kind != HEWN_QUERY_RAY))
             continue;
-        bool last = level + 1u >= levels, found = false;
+        bool last = level + 1u >= levels;
         if (last || high - lower > 0.5 * length(size))
-            found = look(q, lo, hi);
-        if (last && !found)
+            look(q, lo, hi);
+        if (last) {
             low = min(low, lower);
-        if (last)
             continue;
+        }
         level++;
         at = part;
         turn[level] = 0u;

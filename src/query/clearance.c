@@ -156,10 +156,8 @@ static hewn_result expand(search *s, const pair *at, hewn_error *error)
     for (int which = 0; which < 2; which++)
         size[which] = hewn_apart(at->box[which].lo, at->box[which].hi);
     if (fmaxf(size[0], size[1]) <= fmaxf(0.25F * s->tolerance, s->fine)) {
-        float before = s->high;
         try_pair(s, at);
-        if (s->high == before)
-            s->unseen = fminf(s->unseen, at->lower);
+        s->unseen = fminf(s->unseen, at->lower); /* a place that was found in it need not be its nearest */
         return HEWN_OK;
     }
     int which = choose(s, at, size);

@@ -244,6 +244,69 @@ static void test_many_alike(void **state)
     hewn_field_destroy(&field);
 }
 
+/* Two specks, the nearer one too small to be met by chance: values around them are flat, so that places are found only
+ * from near by, and prove little. */
+static hewn_node specks(hewn_field *field, double at[2][3], const double size[2])
+{
+    hewn_node all = hewn_constant(field, 0.5), axes[3] = {hewn_x(field), hewn_y(field), hewn_z(field)};
+    for (int i = 0; i < 2; i++) {
+        hewn_node sum = hewn_constant(field, 0);
+        for (int axis = 0; axis < 3; axis++)
+            sum = hewn_add(field, sum,
+                           hewn_square(field, hewn_sub(field, axes[axis], hewn_constant(field, at[i][axis]))));
+        all = hewn_sub(field, all, hewn_exp(field, scaled(field, sum, -1 / (size[i] * size[i]))));
+    }
+    return all;
+}
+
+static void check_specks(double at[2][3], const double size[2], bool nearest, double radius)
+{
+    const double from[3] = {1.2, 1.1, 1.25};
+    const hewn_query_desc desc = {.tolerance = 0.6};
+    hewn_ray_desc ray = {.radius = radius};
+    hewn_field *field;
+    hewn_query *query;
+    hewn_answer answer;
+    for (int axis = 0; axis < 3; axis++) {
+        ray.from[axis] = from[axis];
+        ray.along[axis] = at[0][axis] - from[axis];
+    }
+    assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+    hewn_node root = specks(field, at, size);
+    GPU_TEST_TRY(hewn_query_create(device, field, root, &box, &query, &error));
+    if (nearest)
+        GPU_TEST_TRY(hewn_query_nearest(query, from, 1, &desc, &answer, &error));
+    else
+        GPU_TEST_TRY(hewn_query_rays(query, &ray, 1, &desc, &answer, &error));
+    double inside = apart(from, at[0]) - radius;
+    if (!(answer.low < inside) || (answer.found && answer.high - answer.low > 0.61))
+        fail_msg("%s from %g to %g, but %g is inside",
+                 nearest      ? "point"
+                 : radius > 0 ? "ball"
+                              : "ray",
+                 answer.low, answer.high, inside);
+    hewn_query_destroy(&query);
+    hewn_field_destroy(&field);
+}
+
+/* What is found in a box as small as the tolerance allows does not deny what is nearer there. Such a box in the corner
+ * that is looked at last. */
+static void test_low_is_proven_in_the_smallest_boxes(void **state)
+{
+    (void)state;
+    const double cell = 2.6 / 32, wide[2] = {0.002, 0.022}, narrow[2] = {0.001, 0.007};
+    for (int i = 0; i < 8; i++) {
+        double at[2][3];
+        for (int axis = 0; axis < 3; axis++) {
+            at[1][axis] = -1.3 + 0.5 * cell + 0.012 * uniform();
+            at[0][axis] = at[1][axis] + 0.019;
+        }
+        check_specks(at, narrow, false, 0);
+        check_specks(at, wide, false, 0.05);
+        check_specks(at, wide, true, 0);
+    }
+}
+
 /* Large fields are for the host, also where there is a device. */
 static void test_large_fields(void **state)
 {
@@ -271,7 +334,8 @@ static void test_large_fields(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_trees),      cmocka_unit_test(test_without_slopes), cmocka_unit_test(test_far_points),
+        cmocka_unit_test(test_trees),      cmocka_unit_test(test_without_slopes),
+        cmocka_unit_test(test_far_points), cmocka_unit_test(test_low_is_proven_in_the_smallest_boxes),
         cmocka_unit_test(test_many_alike), cmocka_unit_test(test_large_fields),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
