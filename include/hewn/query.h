@@ -36,7 +36,8 @@ HEWN_API bool hewn_query_is_on_host(const hewn_query *query);
 typedef struct hewn_query_desc {
     double tolerance;    /* how far `low` and `high` may be apart, in scene units; 0: 1e-4 of the box's diagonal. Less
                             than 4e-6 of it is taken for that */
-    uint32_t most_boxes; /* that are divided for one answer; 0: 65,536. On devices at most 8,192 */
+    uint32_t most_boxes; /* that are divided for one answer; 0: 65,536. Devices look into fewer; what they do not
+                            complete is asked again on the host, which has all of them */
     const hewn_progress *progress; /* the stage is "query" */
 } hewn_query_desc;
 

@@ -15,9 +15,6 @@
 
 enum { LEAST = 64, BLOCK = 4096, MOST_BOXES = 65536 };
 
-/* Seconds: blocks grow while they take less, so that whoever wants to stop is heard soon. */
-#define SHORT 0.05
-
 static hewn_result check_box(const hewn_box *box, hewn_error *error)
 {
     for (int i = 0; i < 3; i++)
@@ -115,35 +112,18 @@ static hewn_result find_limits(const hewn_query *query, const hewn_query_desc *d
     return HEWN_OK;
 }
 
-/* All threads take from one block of questions; between blocks the caller hears how far it is. */
-static hewn_result ask_host(const hewn_query *query, const hewn_question *questions, size_t count,
-                            const hewn_query_limits *limits, hewn_answer *answers, hewn_error *error)
-{
-    hewn_result all = HEWN_OK;
-    hewn_error reason = {0};
-#pragma omp parallel if (count > 1)
-    {
-        hewn_asker asker;
-        hewn_error own = {0};
-        hewn_result result = hewn_asker_create(query, &asker, &own);
-#pragma omp for schedule(dynamic, 4)
-        for (size_t i = 0; i < count; i++)
-            if (result == HEWN_OK)
-                result = hewn_query_search(&asker, &questions[i], limits, &answers[i], &own);
-#pragma omp critical(hewn_query)
-        if (result != HEWN_OK && all == HEWN_OK) {
-            all = result;
-            reason = own;
-        }
-        hewn_asker_destroy(&asker);
-    }
-    if (all != HEWN_OK && error)
-        *error = reason;
-    return all;
-}
-
 /* Questions are made and answered in blocks, so that any number needs little memory. */
 typedef hewn_result make_question(const void *items, size_t index, hewn_question *out, hewn_error *error);
+
+static hewn_result answer(hewn_query *query, const hewn_question *questions, size_t count,
+                          const hewn_query_limits *limits, const hewn_query_part *part, hewn_answer *answers,
+                          hewn_error *error)
+{
+    if (!query->on.device)
+        return hewn_query_ask_host(query, questions, NULL, count, limits, answers, error);
+    HEWN_TRY(hewn_query_ask_device(query, questions, count, limits, answers, error));
+    return hewn_query_finish(query, questions, count, limits, part, answers, error);
+}
 
 static hewn_result ask(hewn_query *query, make_question *make, const void *items, size_t count,
                        const hewn_query_desc *desc, hewn_answer *answers, hewn_error *error)
@@ -159,14 +139,13 @@ static hewn_result ask(hewn_query *query, make_question *make, const void *items
     for (size_t first = 0, size = LEAST, taken; first < count && result == HEWN_OK; first += taken) {
         double began = hewn_clock_now();
         taken = count - first < size ? count - first : size;
-        result = hewn_progress_report(progress, "query", (double)first / (double)count, error);
+        const hewn_query_part part = {progress, (double)first / (double)count, (double)taken / (double)count};
+        result = hewn_progress_report(progress, "query", part.begin, error);
         for (size_t i = 0; i < taken && result == HEWN_OK; i++)
             result = make(items, first + i, &questions[i], error);
-        if (result == HEWN_OK && query->on.device)
-            result = hewn_query_ask_device(query, questions, taken, &limits, answers + first, error);
-        else if (result == HEWN_OK)
-            result = ask_host(query, questions, taken, &limits, answers + first, error);
-        size = 2 * size <= block && hewn_clock_now() - began < SHORT ? 2 * size : size;
+        if (result == HEWN_OK)
+            result = answer(query, questions, taken, &limits, &part, answers + first, error);
+        size = hewn_query_next_block(size, LEAST, block, hewn_clock_now() - began);
     }
     hewn_free(questions);
     if (result != HEWN_OK)

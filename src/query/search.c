@@ -89,8 +89,8 @@ static void try_box(search *s, const hewn_search_box *box)
 /* --- searching ------------------------------------------------------------------------------------------------------
  */
 
-/* Divides a box; what is left of it goes onto the heap, or, too small for that, counts as unseen: a place that was found
- * in it need not be its nearest. */
+/* Divides a box; what is left of it goes onto the heap, or, too small for that, counts as unseen: a place that was
+ * found in it need not be its nearest. */
 static hewn_result expand(search *s, const hewn_search_box *box, float smallest, hewn_error *error)
 {
     hewn_search_box parts[8];

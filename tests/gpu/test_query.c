@@ -193,7 +193,7 @@ static void test_far_points(void **state)
     hewn_ray_desc rays[FAR];
     double points[FAR][3], expected[FAR];
     const double diagonal = apart(box.lo, box.hi), away[4] = {20, 60, 1000, 25000};
-    const hewn_query_desc desc = {.tolerance = TOLERANCE};
+    const hewn_query_desc desc = {.tolerance = TOLERANCE, .most_boxes = 2000};
     for (int i = 0; i < FAR; i++) {
         random_direction(points[i]);
         for (int axis = 0; axis < 3; axis++) {
@@ -241,6 +241,61 @@ static void test_many_alike(void **state)
     assert_true(answers[0].complete && answers[0].low <= 0.9 && fabs(answers[0].high - 0.9) < 0.02);
     assert_true(answers[1].complete && answers[1].low <= 0.6 && fabs(answers[1].high - 0.6) < 0.02);
     hewn_query_destroy(&query);
+    hewn_field_destroy(&field);
+}
+
+typedef struct watch {
+    int calls, most;
+    double fraction;
+} watch;
+
+static bool watch_progress(void *user, const char *stage, double fraction)
+{
+    watch *own = user;
+    assert_string_equal(stage, "query");
+    assert_true(fraction >= own->fraction && fraction < 1);
+    own->fraction = fraction;
+    return ++own->calls <= own->most;
+}
+
+/* That takes long: the caller hears of it, may stop it, and gets what the host would have answered. */
+static void test_many_left_to_the_host(void **state)
+{
+    (void)state;
+    enum { QUESTIONS = 60 };
+    double points[QUESTIONS][3] = {{0}};
+    hewn_answer answers[2][QUESTIONS];
+    hewn_field *field;
+    assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+    hewn_node root = squares(field);
+    for (int i = 0; i < QUESTIONS; i++)
+        points[i][0] = 1e-4 * uniform();
+    for (int host = 0; host < 2; host++) {
+        watch seen = {.most = 1000};
+        const hewn_progress progress = {watch_progress, &seen};
+        const hewn_query_desc desc = {.tolerance = 1e-4, .most_boxes = 1000, .progress = &progress};
+        hewn_query *query;
+        GPU_TEST_TRY(hewn_query_create(host ? NULL : device, field, root, &box, &query, &error));
+        GPU_TEST_TRY(hewn_query_nearest(query, points[0], QUESTIONS, &desc, answers[host], &error));
+        assert_true(host || seen.calls >= 3);
+        if (!host) {
+            seen = (watch){.most = 2};
+            assert_int_equal(hewn_query_nearest(query, points[0], QUESTIONS, &desc, answers[host], NULL),
+                             HEWN_CANCELLED);
+            assert_int_equal(seen.calls, 3);
+            assert_false(answers[host][0].found);
+            seen = (watch){.most = 1000};
+            GPU_TEST_TRY(hewn_query_nearest(query, points[0], QUESTIONS, &desc, answers[host], &error));
+        }
+        hewn_query_destroy(&query);
+    }
+    for (int i = 0; i < QUESTIONS; i++) {
+        const hewn_answer *a = &answers[0][i], *b = &answers[1][i];
+        assert_true(a->found && a->inside && !a->complete);
+        assert_true(a->low == b->low && a->high == b->high);
+        assert_memory_equal(a->point, b->point, sizeof a->point);
+        assert_memory_equal(a->normal, b->normal, sizeof a->normal);
+    }
     hewn_field_destroy(&field);
 }
 
@@ -334,9 +389,10 @@ static void test_large_fields(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_trees),      cmocka_unit_test(test_without_slopes),
-        cmocka_unit_test(test_far_points), cmocka_unit_test(test_low_is_proven_in_the_smallest_boxes),
-        cmocka_unit_test(test_many_alike), cmocka_unit_test(test_large_fields),
+        cmocka_unit_test(test_trees),        cmocka_unit_test(test_without_slopes),
+        cmocka_unit_test(test_far_points),   cmocka_unit_test(test_low_is_proven_in_the_smallest_boxes),
+        cmocka_unit_test(test_many_alike),   cmocka_unit_test(test_many_left_to_the_host),
+        cmocka_unit_test(test_large_fields),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);
 }
