@@ -155,8 +155,7 @@ static hewn_result ask(hewn_query *query, make_question *make, const void *items
 
 static bool is_place(const double p[3])
 {
-    enum { FAR = 1 << 30 };
-    return fabs(p[0]) <= FAR && fabs(p[1]) <= FAR && fabs(p[2]) <= FAR;
+    return fabs(p[0]) <= HEWN_QUERY_FAR && fabs(p[1]) <= HEWN_QUERY_FAR && fabs(p[2]) <= HEWN_QUERY_FAR;
 }
 
 static hewn_result make_nearest(const void *items, size_t index, hewn_question *out, hewn_error *error)
@@ -170,34 +169,48 @@ static hewn_result make_nearest(const void *items, size_t index, hewn_question *
     return HEWN_OK;
 }
 
-static hewn_result check_ray(const hewn_ray_desc *ray, size_t index, double length, hewn_error *error)
+static hewn_result check_ray(const hewn_ray_desc *ray, size_t index, double largest, hewn_error *error)
 {
     if (!is_place(ray->from))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "ray %zu does not begin at a place: %g, %g, %g", index,
                          ray->from[0], ray->from[1], ray->from[2]);
-    if (!(length > 0) || !isfinite(length))
+    if (!(largest > 0) || !isfinite(largest))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "ray %zu has no direction: %g, %g, %g", index, ray->along[0],
                          ray->along[1], ray->along[2]);
-    if (!(ray->radius >= 0) || !isfinite(ray->radius))
+    if (!(ray->radius >= 0) || !(ray->radius <= HEWN_QUERY_FAR))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the radius of ray %zu makes no sense: %g", index, ray->radius);
-    if (!(ray->begin >= 0) || !isfinite(ray->begin) || !isfinite(ray->end) ||
+    if (!(ray->begin >= 0) || !(ray->begin <= HEWN_QUERY_FAR) || !isfinite(ray->end) ||
         (ray->end != 0 && !(ray->end >= ray->begin)))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "ray %zu makes no sense from %g to %g", index, ray->begin,
                          ray->end);
     return HEWN_OK;
 }
 
+/* The largest component; NaN where one is. */
+static double largest_of(const double v[3])
+{
+    double largest = 0;
+    for (int axis = 0; axis < 3; axis++)
+        largest = fabs(v[axis]) > largest || isnan(v[axis]) ? fabs(v[axis]) : largest;
+    return largest;
+}
+
 static hewn_result make_ray(const void *items, size_t index, hewn_question *out, hewn_error *error)
 {
     const hewn_ray_desc *ray = (const hewn_ray_desc *)items + index;
-    double length = sqrt(ray->along[0] * ray->along[0] + ray->along[1] * ray->along[1] + ray->along[2] * ray->along[2]);
-    HEWN_TRY(check_ray(ray, index, length, error));
+    double v[3], length = 0, largest = largest_of(ray->along);
+    HEWN_TRY(check_ray(ray, index, largest, error));
+    for (int axis = 0; axis < 3; axis++) {
+        v[axis] = ray->along[axis] / largest; /* its squares neither overflow nor vanish */
+        length += v[axis] * v[axis];
+    }
+    length = sqrt(length);
     *out = (hewn_question){.kind = ray->radius > 0 ? HEWN_QUERY_BALL : HEWN_QUERY_RAY,
                            .begin = (float)ray->begin,
                            .end = ray->end > 0 ? (float)ray->end : INFINITY,
                            .radius = (float)ray->radius};
     for (int axis = 0; axis < 3; axis++) {
-        double part = ray->along[axis] / length;
+        double part = v[axis] / length;
         out->from[axis] = (float)ray->from[axis];
         out->along[axis] = fabs(part) < 1e-12 ? 1e-12F : (float)part;
     }
