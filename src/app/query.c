@@ -249,7 +249,7 @@ static hewn_result ask_clearance(const query_request *request, const hewn_scene 
     const hewn_scene_desc desc = {.path = request->other, .allow_path = request->scene.desc.allow_path};
     hewn_scene *other;
     hewn_clearance found;
-    HEWN_TRY(hewn_scene_load(&desc, &other, error));
+    HEWN_TRY(hewn_blame_input(hewn_scene_load(&desc, &other, error), desc.path, error));
     hewn_result result = HEWN_OK;
     if (fabs(hewn_scene_metres_per_unit(other) / hewn_scene_metres_per_unit(scene) - 1) > 1e-9)
         result = hewn_fail_at(error, HEWN_BAD_INPUT, request->other, 0, "it is in another unit than the first scene");
@@ -275,7 +275,6 @@ static hewn_result ask_clearance(const query_request *request, const hewn_scene 
 
 static hewn_result answer(query_request *request, const hewn_scene *scene, hewn_error *error)
 {
-    HEWN_TRY(hewn_output_check(request->output ? request->output : "-", error));
     hewn_signals_catch();
     hewn_signals_end_at_once(true, NULL);
     hewn_progress progress = hewn_progress_begin(request->quiet);
@@ -293,7 +292,10 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
     hewn_scene *scene = NULL;
     hewn_result result = read_request(arguments, &request, &error);
     if (result == HEWN_OK)
-        result = hewn_scene_load(&request.scene.desc, &scene, &error);
+        result = hewn_output_check(request.output ? request.output : "-", &error);
+    if (result == HEWN_OK)
+        result =
+            hewn_blame_input(hewn_scene_load(&request.scene.desc, &scene, &error), request.scene.desc.path, &error);
     if (result == HEWN_OK)
         result = answer(&request, scene, &error);
     if (result == HEWN_BAD_INPUT && !error.file[0])
