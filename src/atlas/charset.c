@@ -47,7 +47,8 @@ static hewn_result add_all(hewn_charset *set, const hewn_font *font, hewn_error 
     HEWN_TRY(hewn_font_characters(font, &items, &count, error));
     hewn_result result = HEWN_OK;
     for (size_t i = 0; i < count && result == HEWN_OK; i++)
-        result = hewn_charset_add(set, items[i], items[i], error);
+        if (items[i] <= HEWN_CHARACTER_MOST) /* a font's table may name anything */
+            result = hewn_charset_add(set, items[i], items[i], error);
     hewn_free(items);
     return result;
 }
