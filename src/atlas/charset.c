@@ -4,7 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "font/utf8.h"
+#include "base/utf8.h"
 
 enum { WORDS = (HEWN_CHARACTER_MOST + 1) / 32 };
 
@@ -69,7 +69,7 @@ hewn_result hewn_charset_add_text(hewn_charset *set, const char *text, hewn_erro
 {
     for (const char *at = text; *at;) {
         uint32_t value;
-        size_t length = hewn_utf8_next(at, &value);
+        size_t length = hewn_utf8_next(at, SIZE_MAX, &value);
         if (length == 0)
             return hewn_fail(error, HEWN_BAD_INPUT, "byte %zu is not UTF-8", (size_t)(at - text) + 1);
         bool mark = value == 0xFEFF && at == text; /* of the byte order, as some editors write it */
@@ -141,7 +141,7 @@ static hewn_result read_quoted(reader *own, char quote, uint32_t *out, bool *end
         if (*own->at != '\\' && *own->at != '"' && *own->at != '\'')
             return fail(own, "after \\ there is another \\ or a quote");
     }
-    size_t length = hewn_utf8_next(own->at, out);
+    size_t length = hewn_utf8_next(own->at, SIZE_MAX, out);
     if (length == 0)
         return fail(own, "a byte that is not UTF-8");
     own->at += length;
