@@ -8,6 +8,7 @@
 #include "app/number_lines.h"
 #include "app/rows.h"
 #include "app/scene_arguments.h"
+#include "app/validation.h"
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -144,9 +145,7 @@ typedef struct computing {
 static hewn_result begin_computing(const eval_request *request, const hewn_field *field, computing *out,
                                    hewn_error *error)
 {
-    const char *validation = getenv("HEWN_VALIDATION");
-    const hewn_device_desc desc = {.choice = request->device,
-                                   .validation = validation && validation[0] && strcmp(validation, "0") != 0};
+    const hewn_device_desc desc = {.choice = request->device, .validation = hewn_validation_wanted()};
     *out = (computing){.field = field};
     if (!request->device)
         return HEWN_OK;

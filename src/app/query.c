@@ -1,6 +1,5 @@
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
@@ -9,6 +8,7 @@
 #include "app/number_lines.h"
 #include "app/rows.h"
 #include "app/scene_arguments.h"
+#include "app/validation.h"
 #include "base/alloc.h"
 #include "base/error.h"
 #include "pipeline/domain.h"
@@ -199,9 +199,7 @@ static hewn_result ask_lines(const query_request *request, const hewn_scene *sce
     hewn_device *device = NULL;
     hewn_query *query = NULL;
     hewn_number_lines *lines = NULL;
-    const char *validation = getenv("HEWN_VALIDATION");
-    const hewn_device_desc desc = {.choice = request->device,
-                                   .validation = validation && validation[0] && strcmp(validation, "0") != 0};
+    const hewn_device_desc desc = {.choice = request->device, .validation = hewn_validation_wanted()};
     bool points = request->points != NULL;
     hewn_result result = hewn_number_lines_open(
         points ? request->points : request->rays, points ? 3 : 6,
