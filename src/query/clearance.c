@@ -221,15 +221,12 @@ hewn_result hewn_query_clearance(hewn_query *a, hewn_query *b, const hewn_query_
 {
     *out = (hewn_clearance){0};
     hewn_box all;
-    double diagonal = fmax(a->diagonal, b->diagonal), given = desc ? desc->tolerance : 0;
-    if (!(given >= 0) || !isfinite(given))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", given);
-    search s = {.heap.size = sizeof(pair),
-                .high = INFINITY,
-                .unseen = INFINITY,
-                .most_boxes = desc && desc->most_boxes ? desc->most_boxes : 65536};
-    s.fine = fmaxf(a->fine, b->fine);
-    s.tolerance = fmaxf((float)(given > 0 ? given : 1e-3 * diagonal), 4 * s.fine);
+    hewn_query_limits limits;
+    double diagonal = fmax(a->diagonal, b->diagonal);
+    search s = {.heap.size = sizeof(pair), .high = INFINITY, .unseen = INFINITY, .fine = fmaxf(a->fine, b->fine)};
+    HEWN_TRY(hewn_query_find_limits(desc, 1e-3 * diagonal, s.fine, INFINITY, &limits, error));
+    s.tolerance = limits.tolerance;
+    s.most_boxes = limits.most_boxes;
     for (int axis = 0; axis < 3; axis++) {
         all.lo[axis] = fmin(a->box.lo[axis], b->box.lo[axis]);
         all.hi[axis] = fmax(a->box.hi[axis], b->box.hi[axis]);

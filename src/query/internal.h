@@ -31,6 +31,11 @@ typedef struct hewn_query_limits {
     uint32_t most_boxes;
 } hewn_query_limits;
 
+/* Finds them; the tolerance is `otherwise` where none is given, and between four times `fine` and `most`.
+ * HEWN_INVALID_ARGUMENT. */
+hewn_result hewn_query_find_limits(const hewn_query_desc *desc, double otherwise, float fine, double most,
+                                   hewn_query_limits *out, hewn_error *error);
+
 /* --- ask.c: values at points ---------------------------------------------------------------------------------------
  */
 

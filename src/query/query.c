@@ -13,7 +13,7 @@
 /* How much room around a box slopes are bounded in, in diagonals. */
 #define ROOM 64.0
 
-enum { LEAST = 64, BLOCK = 4096, MOST_BOXES = 65536 };
+enum { LEAST = 64, BLOCK = 4096 };
 
 static hewn_result check_box(const hewn_box *box, hewn_error *error)
 {
@@ -100,14 +100,14 @@ double hewn_query_slope(const hewn_query *query, const hewn_box *box)
 /* --- asking ---------------------------------------------------------------------------------------------------------
  */
 
-static hewn_result find_limits(const hewn_query *query, const hewn_query_desc *desc, hewn_query_limits *out,
-                               hewn_error *error)
+hewn_result hewn_query_find_limits(const hewn_query_desc *desc, double otherwise, float fine, double most,
+                                   hewn_query_limits *out, hewn_error *error)
 {
+    enum { MOST_BOXES = 65536 };
     double given = desc ? desc->tolerance : 0;
     if (!(given >= 0) || !isfinite(given))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", given);
-    double tolerance = given > 0 ? given : 1e-4 * query->diagonal;
-    out->tolerance = (float)fmin(fmax(tolerance, 4 * (double)query->fine), query->diagonal);
+    out->tolerance = (float)fmin(fmax(given > 0 ? given : otherwise, 4 * (double)fine), most);
     out->most_boxes = desc && desc->most_boxes ? desc->most_boxes : MOST_BOXES;
     return HEWN_OK;
 }
@@ -130,7 +130,7 @@ static hewn_result ask(hewn_query *query, make_question *make, const void *items
 {
     hewn_query_limits limits;
     const hewn_progress *progress = desc ? desc->progress : NULL;
-    HEWN_TRY(find_limits(query, desc, &limits, error));
+    HEWN_TRY(hewn_query_find_limits(desc, 1e-4 * query->diagonal, query->fine, query->diagonal, &limits, error));
     size_t block = query->on.device ? 16 * BLOCK : BLOCK;
     hewn_question *questions = hewn_alloc(count < block ? count : block, sizeof *questions);
     if (!questions)
