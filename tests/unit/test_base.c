@@ -473,8 +473,7 @@ static void test_utf8(void **state)
             assert_int_equal(hewn_utf8_next((const char *)text, left, &value), 0);
     }
     static const char *const bad[] = {"\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xF0\x90\x80",
-                                      "\xF0\x90\x80"
-                                      "a"};
+                                      "\xF0\x90\x80z"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_int_equal(hewn_utf8_next(bad[i], SIZE_MAX, &value), 0);
 }
