@@ -184,6 +184,7 @@ hewn_result hewn_smooth_bilateral(smooth_work *work, hewn_error *error)
 {
     bilateral filter = {.work = work, .triangles = (uint32_t)work->cut.face_count};
     size_t count = filter.triangles;
+    HEWN_TRY(hewn_smooth_take_room(work, error));
     double *room = hewn_alloc(count, 13 * sizeof *room);
     filter.bends = hewn_alloc(BENDS, sizeof *filter.bends);
     if (!room || !filter.bends) {

@@ -221,6 +221,7 @@ static hewn_result run_steps(implicit_solve *solve, double *fixed, hewn_error *e
 
 hewn_result hewn_smooth_implicit(smooth_work *work, hewn_error *error)
 {
+    hewn_smooth_sides_free(&work->sides);
     implicit_solve solve = {.work = work, .unknown = hewn_alloc(work->count, sizeof *solve.unknown)};
     if (!solve.unknown)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
