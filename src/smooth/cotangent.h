@@ -17,7 +17,14 @@ typedef struct smooth_triangle {
 
 static const double smooth_least_area = 1e-5;
 
-/* Of the triangle whose edges from its first corner are u and v. Without a branch, for loops over many. */
+/* Half of one over that area. Without a branch, for loops over many. */
+static inline double smooth_half_inverse(double twice, double least)
+{
+    const double area = twice > least ? twice : least, inverse = 0.5 / (area > 0 ? area : 1);
+    return area > 0 ? inverse : 0;
+}
+
+/* Of the triangle whose edges from its first corner are u and v. */
 static inline smooth_triangle smooth_triangle_between(const double u[3], const double v[3])
 {
     double w[3], normal[3];
@@ -25,8 +32,7 @@ static inline smooth_triangle smooth_triangle_between(const double u[3], const d
     smooth_cross(u, v, normal);
     const double twice = sqrt(smooth_dot(normal, normal));
     const double least = smooth_least_area * (smooth_dot(u, u) + smooth_dot(v, v) + smooth_dot(w, w));
-    const double area = twice > least ? twice : least, inverse = 0.5 / (area > 0 ? area : 1);
-    const double by = area > 0 ? inverse : 0;
+    const double by = smooth_half_inverse(twice, least);
     return (smooth_triangle){{by * smooth_dot(u, v), by * -smooth_dot(u, w), by * smooth_dot(v, w)}, twice};
 }
 
@@ -54,16 +60,30 @@ typedef struct smooth_corner {
     double ab, ac, area;
 } smooth_corner;
 
+/* By half the cotangents at a, b and c, and the products of u and v. */
+static inline smooth_corner smooth_corner_by(const double half[3], double twice, double uu, double vv, double uv)
+{
+    double area = (uu * half[2] + vv * half[1]) / 4;
+    area = twice <= 2 * smooth_least_area * (uu + vv - uv) ? twice / 6 : area;
+    area = (half[1] < 0) | (half[2] < 0) ? twice / 8 : area;
+    area = half[0] < 0 ? twice / 4 : area;
+    return (smooth_corner){half[2], half[1], area};
+}
+
 static inline smooth_corner smooth_corner_of(const smooth_triangle *triangle, uint32_t at, const double u[3],
                                              const double v[3])
 {
-    double half_a = triangle->half[at], half_b = triangle->half[(at + 1) % 3], half_c = triangle->half[(at + 2) % 3];
-    double twice = triangle->twice, uu = smooth_dot(u, u), vv = smooth_dot(v, v), uv = smooth_dot(u, v);
-    double area = (uu * half_c + vv * half_b) / 4;
-    area = twice <= 2 * smooth_least_area * (uu + vv - uv) ? twice / 6 : area;
-    area = (half_b < 0) | (half_c < 0) ? twice / 8 : area;
-    area = half_a < 0 ? twice / 4 : area;
-    return (smooth_corner){half_c, half_b, area};
+    const double half[3] = {triangle->half[at], triangle->half[(at + 1) % 3], triangle->half[(at + 2) % 3]};
+    return smooth_corner_by(half, triangle->twice, smooth_dot(u, u), smooth_dot(v, v), smooth_dot(u, v));
+}
+
+/* By the products of u and v alone, which lose of the area of a sliver what a float would not show. */
+static inline smooth_corner smooth_corner_between(double uu, double vv, double uv)
+{
+    const double square = uu * vv - uv * uv, twice = sqrt(square > 0 ? square : 0);
+    const double by = smooth_half_inverse(twice, 2 * smooth_least_area * (uu + vv - uv));
+    const double half[3] = {by * uv, by * (uu - uv), by * (vv - uv)};
+    return smooth_corner_by(half, twice, uu, vv, uv);
 }
 
 /* The other two corners of the triangle of a corner, in order. */

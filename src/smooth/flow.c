@@ -1,5 +1,7 @@
 /* Mean curvature flow in explicit steps, by weights that are measured at the start and kept, as those of backward Euler
  * are; or measured anew now and then. */
+#include <string.h>
+
 #include "base/alloc.h"
 #include "base/clones.h"
 #include "smooth/blocks.h"
@@ -30,112 +32,105 @@ static hewn_result find_rows(const smooth_work *work, flow_weights *out, hewn_er
                       : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
 }
 
-/* Corners at a vertex that are weighed at a time: their triangles' vertices after and before it, and what comes of it. */
-enum { LANES = 8 };
-typedef struct corner_lanes {
-    uint32_t next[LANES], before[LANES];
-    double u[3][LANES], v[3][LANES], area[LANES];
-    float to_next[LANES], to_before[LANES]; /* weights of the edges */
-} corner_lanes;
+/* Corners that are weighed at a time: the products of the edges u and v from each to the vertices after and before it in
+ * its triangle, and what comes of them. */
+enum { BATCH = 384, LANES = 8 };
+typedef struct corner_batch {
+    double uu[BATCH], vv[BATCH], uv[BATCH], area[BATCH];
+    float to_next[BATCH], to_before[BATCH]; /* weights of the edges */
+} corner_batch;
 
-/* Lanes past the count are triangles without area. */
-static HEWN_INTO_CLONES void gather(const smooth_work *work, uint32_t v, const smooth_side *sides, uint32_t count,
-                          corner_lanes *out)
+static HEWN_INTO_CLONES void gather(const double *at, uint32_t v, const smooth_side *sides, uint32_t begin,
+                                    uint32_t end, corner_batch *out)
 {
-    const double *x = work->at + 3 * (size_t)v;
-    for (uint32_t i = 0; i < LANES; i++) {
-        const smooth_side side = i < count ? sides[i] : (smooth_side){v, v};
-        out->next[i] = side.next;
-        out->before[i] = side.before;
-        for (size_t axis = 0; axis < 3; axis++) {
-            out->u[axis][i] = work->at[3 * (size_t)side.next + axis] - x[axis];
-            out->v[axis][i] = work->at[3 * (size_t)side.before + axis] - x[axis];
-        }
+    for (uint32_t i = begin; i < end; i++) {
+        double next[3], before[3];
+        smooth_between(at + 3 * (size_t)v, at + 3 * (size_t)sides[i].next, next);
+        smooth_between(at + 3 * (size_t)v, at + 3 * (size_t)sides[i].before, before);
+        out->uu[i] = smooth_dot(next, next);
+        out->vv[i] = smooth_dot(before, before);
+        out->uv[i] = smooth_dot(next, before);
     }
 }
 
-static HEWN_INTO_CLONES void measure_lanes(corner_lanes *lanes)
+static HEWN_INTO_CLONES void measure_batch(corner_batch *batch, uint32_t count)
 {
-    for (int i = 0; i < LANES; i++) {
-        const double u[3] = {lanes->u[0][i], lanes->u[1][i], lanes->u[2][i]};
-        const double v[3] = {lanes->v[0][i], lanes->v[1][i], lanes->v[2][i]};
-        const smooth_triangle triangle = smooth_triangle_between(u, v);
-        const smooth_corner corner = smooth_corner_of(&triangle, 0, u, v);
-        lanes->to_next[i] = (float)corner.ab;
-        lanes->to_before[i] = (float)corner.ac;
-        lanes->area[i] = corner.area;
+    for (uint32_t i = 0; i < count; i++) {
+        const smooth_corner corner = smooth_corner_between(batch->uu[i], batch->vv[i], batch->uv[i]);
+        batch->to_next[i] = (float)corner.ab;
+        batch->to_before[i] = (float)corner.ac;
+        batch->area[i] = corner.area;
     }
 }
 
-/* The sum of lanes by halves, which leaves little to wait for. */
-static HEWN_INTO_CLONES double sum_lanes(const double *items)
+/* Adds what a corner gives to the edges of a row. */
+static HEWN_INTO_CLONES void add_corner(const smooth_side *side, float to_next, float to_before, const uint32_t *row,
+                                        uint32_t length, float *weights)
 {
-    double half[LANES / 2];
-    for (int i = 0; i < LANES / 2; i++)
-        half[i] = items[i] + items[i + LANES / 2];
-    return (half[0] + half[2]) + (half[1] + half[3]);
+    for (uint32_t k = 0; k < length; k++)
+        weights[k] += (row[k] == side->next ? to_next : 0) + (row[k] == side->before ? to_before : 0);
 }
 
-static HEWN_INTO_CLONES double sum_sizes(const corner_lanes *lanes)
-{
-    double sizes[LANES];
-    for (int i = 0; i < LANES; i++)
-        sizes[i] = (double)(fabsf(lanes->to_next[i]) + fabsf(lanes->to_before[i]));
-    return sum_lanes(sizes);
-}
+/* The vertex whose corners are being weighed. */
+typedef struct flow_vertex {
+    uint32_t v;
+    double sum, area; /* of the weights' sizes, and the mixed area */
+    uint64_t clamped; /* of those before */
+} flow_vertex;
 
-/* Adds what corners give to the edges of a row. */
-static HEWN_INTO_CLONES void add_lanes(const corner_lanes *lanes, const uint32_t *row, uint32_t length, float *weights)
+static HEWN_INTO_CLONES void add_corners(const flow_weights *weights, const smooth_side *sides,
+                                         const corner_batch *batch, uint32_t begin, uint32_t end, flow_vertex *at)
 {
-    for (uint32_t begin = 0; begin < length; begin += LANES) {
-        const uint32_t count = length - begin < LANES ? length - begin : LANES;
-        uint32_t names[LANES];
-        float sum[LANES] = {0};
-        for (uint32_t k = 0; k < LANES; k++)
-            names[k] = k < count ? row[begin + k] : HEWN_NONE;
-        for (int i = 0; i < LANES; i++)
-            for (int k = 0; k < LANES; k++)
-                sum[k] += (names[k] == lanes->next[i] ? lanes->to_next[i] : 0) +
-                          (names[k] == lanes->before[i] ? lanes->to_before[i] : 0);
-        for (uint32_t k = 0; k < count; k++)
-            weights[begin + k] += sum[k];
+    const uint32_t place = weights->rows->first[at->v], length = weights->rows->first[at->v + 1] - place;
+    const uint32_t *row = weights->rows->items + place;
+    for (uint32_t i = begin; i < end; i++) {
+        add_corner(sides + i, batch->to_next[i], batch->to_before[i], row, length, weights->items + place);
+        at->sum += (double)(fabsf(batch->to_next[i]) + fabsf(batch->to_before[i]));
+        at->area += batch->area[i];
     }
 }
 
 /* A vertex of area A and weights w moves by t / A of its pull. Gershgorin's circles keep the eigenvalues of the step
- * within 2 where t / A is at most 1 / sum |w|, so no vertex goes further; whether it would have. */
-static HEWN_INTO_CLONES bool weigh_vertex(const smooth_work *work, const flow_weights *weights, double time, uint32_t v)
+ * within 2 where t / A is at most 1 / sum |w|, so no vertex goes further. */
+static HEWN_INTO_CLONES void finish_vertex(const smooth_work *work, const flow_weights *weights, double time,
+                                           flow_vertex *at)
 {
-    const uint32_t begin = weights->rows->first[v], length = weights->rows->first[v + 1] - begin;
-    const uint32_t *row = weights->rows->items + begin;
-    const double free = work->flags[v] & SMOOTH_RIM ? 0 : smooth_freedom(work, v);
-    float *out = weights->items + begin;
-    double sum = 0, area = 0;
-    for (uint32_t k = 0; k < length; k++)
-        out[k] = 0;
-    const uint32_t end = free > 0 ? work->sides.first[v + 1] : 0;
-    for (uint32_t i = work->sides.first[v]; i < end; i += LANES) {
-        corner_lanes lanes;
-        gather(work, v, work->sides.items + i, end - i, &lanes);
-        measure_lanes(&lanes);
-        add_lanes(&lanes, row, length, out);
-        sum += sum_sizes(&lanes);
-        area += sum_lanes(lanes.area);
-    }
-    const bool far = time * sum > area;
-    const double factor = !(sum > 0) ? 0 : free * (far ? 1 / sum : time / area);
-    for (uint32_t k = 0; k < length; k++)
-        out[k] = (float)((double)out[k] * factor);
-    return far;
+    const double free = work->flags[at->v] & SMOOTH_RIM ? 0 : smooth_freedom(work, at->v);
+    const bool far = free > 0 && time * at->sum > at->area;
+    const double factor = !(at->sum > 0) ? 0 : free * (far ? 1 / at->sum : time / at->area);
+    for (uint32_t i = weights->rows->first[at->v]; i < weights->rows->first[at->v + 1]; i++)
+        weights->items[i] = (float)((double)weights->items[i] * factor);
+    *at = (flow_vertex){at->v + 1, 0, 0, at->clamped + far};
 }
 
+/* Returns how many vertices could not go as far as they should. */
 HEWN_CLONES static uint64_t weigh_block(const smooth_work *work, const flow_weights *weights, double time,
                                         uint32_t begin, uint32_t end)
 {
-    uint64_t clamped = 0;
-    for (uint32_t v = begin; v < end; v++)
-        clamped += weigh_vertex(work, weights, time, v);
-    return clamped;
+    const uint32_t *first = work->sides.first;
+    flow_vertex at = {begin, 0, 0, 0};
+    corner_batch batch;
+    memset(weights->items + weights->rows->first[begin], 0,
+           (weights->rows->first[end] - weights->rows->first[begin]) * sizeof *weights->items);
+    for (uint32_t place = first[begin]; at.v < end; place += BATCH) {
+        const smooth_side *sides = work->sides.items + place;
+        const uint32_t count = first[end] - place < BATCH ? first[end] - place : BATCH;
+        for (uint32_t v = at.v, i = 0; i < count; v++) {
+            const uint32_t stop = first[v + 1] - place < count ? first[v + 1] - place : count;
+            gather(work->at, v, sides, i, stop, &batch);
+            i = stop;
+        }
+        measure_batch(&batch, count);
+        for (uint32_t i = 0; at.v < end;) {
+            const uint32_t stop = first[at.v + 1] - place < count ? first[at.v + 1] - place : count;
+            add_corners(weights, sides, &batch, i, stop, &at);
+            if (place + stop < first[at.v + 1])
+                break;
+            finish_vertex(work, weights, time, &at);
+            i = stop;
+        }
+    }
+    return at.clamped;
 }
 
 static void weigh(const smooth_work *work, const flow_weights *weights)
