@@ -81,8 +81,8 @@ typedef struct hewn_smooth_report {
     uint32_t iterations;
     double strength, passband, step, angle, radius; /* in force; 0 where the method has none */
     uint64_t locked_vertices;                       /* with faces, but not free to move */
-    uint64_t clamped_vertices;                      /* whose step was shortened (COTAN), when weights were last measured */
-    uint64_t closed_components;                     /* whose volume was kept */
+    uint64_t clamped_vertices;  /* whose step was shortened (COTAN), when weights were last measured */
+    uint64_t closed_components; /* whose volume was kept */
     double volume_before, volume_after;
     double area_before, area_after;
     double largest_move, mean_move; /* distances between a vertex before and after; the mean is over all */

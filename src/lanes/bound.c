@@ -156,7 +156,7 @@ static void run_other(const hewn_lane_tape *tape, const hewn_lane_step *step, co
 }
 
 HEWN_CLONES static void run_step(const hewn_lane_tape *tape, const hewn_lane_step *step, const float *values,
-                                      const hewn_lane_boxes *boxes, rows *r, uint32_t count)
+                                 const hewn_lane_boxes *boxes, rows *r, uint32_t count)
 {
     const float *alo = r->alo, *ahi = r->ahi, *blo = r->blo, *bhi = r->bhi;
     float *restrict lo = r->lo, *restrict hi = r->hi, *restrict unsure = r->unsure;

@@ -110,7 +110,7 @@ static inline double square_from(const hewn_lane_side *side, double x, double y,
 
 /* The least square, and 1 where a ray crosses an odd number of all sides, else 0. */
 HEWN_CLONES static void measure(const hewn_lane_outline *outline, const double *x, const double *y,
-                                     double *restrict least, int64_t *restrict odd, uint32_t count)
+                                double *restrict least, int64_t *restrict odd, uint32_t count)
 {
     const hewn_lane_side *sides = outline->sides, *end = sides + outline->side_count;
     count &= ~(HEWN_LANE_BLOCK - 1U);

@@ -43,8 +43,7 @@ static inline float blend(float a, float b, float size, float inverse)
     r[i] = (EXPRESSION);                                                                                               \
     break
 
-HEWN_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_lane_points *points,
-                                 uint32_t count)
+HEWN_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_lane_points *points, uint32_t count)
 {
     count &= ~(HEWN_LANE_BLOCK - 1U);
     for (uint32_t at = 0; at < tape->count; at++) {

@@ -65,7 +65,7 @@ static inline smooth_corner smooth_corner_by(const double half[3], double twice,
 {
     double area = (uu * half[2] + vv * half[1]) / 4;
     area = twice <= 2 * smooth_least_area * (uu + vv - uv) ? twice / 6 : area;
-    area = (half[1] < 0) | (half[2] < 0) ? twice / 8 : area;
+    area = ((half[1] < 0) | (half[2] < 0)) ? twice / 8 : area;
     area = half[0] < 0 ? twice / 4 : area;
     return (smooth_corner){half[2], half[1], area};
 }

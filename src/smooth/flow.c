@@ -1,11 +1,10 @@
 /* Mean curvature flow in explicit steps, by weights that are measured at the start and kept, as those of backward Euler
  * are; or measured anew now and then. */
-#include <string.h>
-
 #include "base/alloc.h"
 #include "base/clones.h"
 #include "smooth/blocks.h"
 #include "smooth/cotangent.h"
+#include "smooth/four.h"
 
 /* The share of the way to each neighbour that a vertex goes in a step; floats, whose rounding moves no vertex by more
  * than some 1e-7 of an edge. */
@@ -32,28 +31,68 @@ static hewn_result find_rows(const smooth_work *work, flow_weights *out, hewn_er
                       : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
 }
 
-/* Corners that are weighed at a time: the products of the edges u and v from each to the vertices after and before it in
- * its triangle, and what comes of them. */
-enum { BATCH = 384, LANES = 8 };
+/* What a vertex of area A and weights w goes of its pull: t / A. Gershgorin's circles keep the eigenvalues of the step
+ * within 2 where t / A is at most 1 / sum |w|, so no vertex goes further; `*far` where it would have. */
+static HEWN_INTO_CLONES double find_factor(const smooth_work *work, uint32_t v, double sum, double area, bool *far)
+{
+    const double time = work->desc->step * work->desc->step / 2;
+    const double free = work->flags[v] & SMOOTH_RIM ? 0 : smooth_freedom(work, v);
+    *far = free > 0 && time * sum > area;
+    return free > 0 && sum > 0 ? free * (*far ? 1 / sum : time / area) : 0;
+}
+
+/* Any vertex, a corner at a time. Returns whether it would have gone too far. */
+static bool weigh_long(const smooth_work *work, const flow_weights *weights, uint32_t v)
+{
+    const uint32_t begin = weights->rows->first[v], end = weights->rows->first[v + 1];
+    const double *x = work->at + 3 * (size_t)v;
+    double sum = 0, area = 0;
+    bool far;
+    for (uint32_t k = begin; k < end; k++)
+        weights->items[k] = 0;
+    for (uint32_t i = work->sides.first[v]; i < work->sides.first[v + 1]; i++) {
+        const smooth_side side = work->sides.items[i];
+        double next[3], before[3];
+        smooth_between(x, work->at + 3 * (size_t)side.next, next);
+        smooth_between(x, work->at + 3 * (size_t)side.before, before);
+        const smooth_corner corner =
+            smooth_corner_between(smooth_dot(next, next), smooth_dot(before, before), smooth_dot(next, before));
+        for (uint32_t k = begin; k < end; k++)
+            weights->items[k] += (float)((weights->rows->items[k] == side.next ? corner.ab : 0) +
+                                         (weights->rows->items[k] == side.before ? corner.ac : 0));
+        sum += fabs(corner.ab) + fabs(corner.ac);
+        area += corner.area;
+    }
+    const double factor = find_factor(work, v, sum, area, &far);
+    for (uint32_t k = begin; k < end; k++)
+        weights->items[k] = (float)((double)weights->items[k] * factor);
+    return far;
+}
+
+/* --- a batch of vertices ------------------------------------------------------------------------------------------ */
+
+/* The corners of some vertices: the products of the edges u and v from each to the vertices after and before it in its
+ * triangle, and what comes of them. Three sweeps, of which the middle one has a lane a corner. */
+enum { BATCH = 384 };
 typedef struct corner_batch {
+    const smooth_side *sides;
     double uu[BATCH], vv[BATCH], uv[BATCH], area[BATCH];
     float to_next[BATCH], to_before[BATCH]; /* weights of the edges */
 } corner_batch;
 
-static HEWN_INTO_CLONES void gather(const double *at, uint32_t v, const smooth_side *sides, uint32_t begin,
-                                    uint32_t end, corner_batch *out)
+static HEWN_INTO_CLONES void gather(corner_batch *batch, const double *at, uint32_t v, uint32_t begin, uint32_t end)
 {
     for (uint32_t i = begin; i < end; i++) {
         double next[3], before[3];
-        smooth_between(at + 3 * (size_t)v, at + 3 * (size_t)sides[i].next, next);
-        smooth_between(at + 3 * (size_t)v, at + 3 * (size_t)sides[i].before, before);
-        out->uu[i] = smooth_dot(next, next);
-        out->vv[i] = smooth_dot(before, before);
-        out->uv[i] = smooth_dot(next, before);
+        smooth_between(at + 3 * (size_t)v, at + 3 * (size_t)batch->sides[i].next, next);
+        smooth_between(at + 3 * (size_t)v, at + 3 * (size_t)batch->sides[i].before, before);
+        batch->uu[i] = smooth_dot(next, next);
+        batch->vv[i] = smooth_dot(before, before);
+        batch->uv[i] = smooth_dot(next, before);
     }
 }
 
-static HEWN_INTO_CLONES void measure_batch(corner_batch *batch, uint32_t count)
+static HEWN_INTO_CLONES void measure_corners(corner_batch *batch, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
         const smooth_corner corner = smooth_corner_between(batch->uu[i], batch->vv[i], batch->uv[i]);
@@ -63,87 +102,84 @@ static HEWN_INTO_CLONES void measure_batch(corner_batch *batch, uint32_t count)
     }
 }
 
-/* Adds what a corner gives to the edges of a row. */
-static HEWN_INTO_CLONES void add_corner(const smooth_side *side, float to_next, float to_before, const uint32_t *row,
-                                        uint32_t length, float *weights)
+/* What a corner gives to a neighbour among four. */
+static HEWN_INTO_CLONES smooth_four_floats given(smooth_four names, const smooth_side *side, float to_next,
+                                                 float to_before)
 {
-    for (uint32_t k = 0; k < length; k++)
-        weights[k] += (row[k] == side->next ? to_next : 0) + (row[k] == side->before ? to_before : 0);
+    const smooth_four_floats next = {to_next, to_next, to_next, to_next};
+    const smooth_four_floats before = {to_before, to_before, to_before, to_before};
+    return (smooth_four_floats)((smooth_four)next & (names == (int32_t)side->next)) +
+           (smooth_four_floats)((smooth_four)before & (names == (int32_t)side->before));
 }
 
-/* The vertex whose corners are being weighed. */
-typedef struct flow_vertex {
-    uint32_t v;
-    double sum, area; /* of the weights' sizes, and the mixed area */
-    uint64_t clamped; /* of those before */
-} flow_vertex;
-
-static HEWN_INTO_CLONES void add_corners(const flow_weights *weights, const smooth_side *sides,
-                                         const corner_batch *batch, uint32_t begin, uint32_t end, flow_vertex *at)
+/* A vertex of at most eight neighbours, whose corners are a range of the batch. What is written past its row is written
+ * over by the rows that follow, up to `row_end`. */
+static HEWN_INTO_CLONES bool weigh_short(const smooth_work *work, const flow_weights *weights,
+                                         const corner_batch *batch, uint32_t v, uint32_t begin, uint32_t end,
+                                         uint32_t row_end)
 {
-    const uint32_t place = weights->rows->first[at->v], length = weights->rows->first[at->v + 1] - place;
-    const uint32_t *row = weights->rows->items + place;
+    const uint32_t place = weights->rows->first[v], length = weights->rows->first[v + 1] - place;
+    smooth_eight names = {{{0}, {0}}};
+    smooth_four_floats sums[2] = {{0}, {0}};
+    double sum = 0, area = 0;
+    bool far;
+    smooth_eight_copy(&names, weights->rows->items + place, length, row_end - place);
     for (uint32_t i = begin; i < end; i++) {
-        add_corner(sides + i, batch->to_next[i], batch->to_before[i], row, length, weights->items + place);
-        at->sum += (double)(fabsf(batch->to_next[i]) + fabsf(batch->to_before[i]));
-        at->area += batch->area[i];
+        for (int half = 0; half < 2; half++)
+            sums[half] += given(names.half[half], batch->sides + i, batch->to_next[i], batch->to_before[i]);
+        sum += (double)(fabsf(batch->to_next[i]) + fabsf(batch->to_before[i]));
+        area += batch->area[i];
     }
+    const float factor = (float)find_factor(work, v, sum, area, &far);
+    sums[0] *= factor;
+    sums[1] *= factor;
+    smooth_eight_copy(weights->items + place, sums, length, row_end - place);
+    return far;
 }
 
-/* A vertex of area A and weights w moves by t / A of its pull. Gershgorin's circles keep the eigenvalues of the step
- * within 2 where t / A is at most 1 / sum |w|, so no vertex goes further. */
-static HEWN_INTO_CLONES void finish_vertex(const smooth_work *work, const flow_weights *weights, double time,
-                                           flow_vertex *at)
+/* Vertices whose corners fill at most a batch. */
+static HEWN_INTO_CLONES uint64_t weigh_batch(const smooth_work *work, const flow_weights *weights, uint32_t begin,
+                                             uint32_t end, uint32_t row_end)
 {
-    const double free = work->flags[at->v] & SMOOTH_RIM ? 0 : smooth_freedom(work, at->v);
-    const bool far = free > 0 && time * at->sum > at->area;
-    const double factor = !(at->sum > 0) ? 0 : free * (far ? 1 / at->sum : time / at->area);
-    for (uint32_t i = weights->rows->first[at->v]; i < weights->rows->first[at->v + 1]; i++)
-        weights->items[i] = (float)((double)weights->items[i] * factor);
-    *at = (flow_vertex){at->v + 1, 0, 0, at->clamped + far};
+    const uint32_t *first = work->sides.first, place = first[begin];
+    uint64_t far = 0;
+    corner_batch batch;
+    batch.sides = work->sides.items + place;
+    for (uint32_t v = begin; v < end; v++)
+        gather(&batch, work->at, v, first[v] - place, first[v + 1] - place);
+    measure_corners(&batch, first[end] - place);
+    for (uint32_t v = begin; v < end; v++)
+        far += weights->rows->first[v + 1] - weights->rows->first[v] > SMOOTH_EIGHT
+                   ? weigh_long(work, weights, v)
+                   : weigh_short(work, weights, &batch, v, first[v] - place, first[v + 1] - place, row_end);
+    return far;
 }
 
 /* Returns how many vertices could not go as far as they should. */
-HEWN_CLONES static uint64_t weigh_block(const smooth_work *work, const flow_weights *weights, double time,
-                                        uint32_t begin, uint32_t end)
+HEWN_CLONES static uint64_t weigh_block(const smooth_work *work, const flow_weights *weights, uint32_t begin,
+                                        uint32_t end)
 {
-    const uint32_t *first = work->sides.first;
-    flow_vertex at = {begin, 0, 0, 0};
-    corner_batch batch;
-    memset(weights->items + weights->rows->first[begin], 0,
-           (weights->rows->first[end] - weights->rows->first[begin]) * sizeof *weights->items);
-    for (uint32_t place = first[begin]; at.v < end; place += BATCH) {
-        const smooth_side *sides = work->sides.items + place;
-        const uint32_t count = first[end] - place < BATCH ? first[end] - place : BATCH;
-        for (uint32_t v = at.v, i = 0; i < count; v++) {
-            const uint32_t stop = first[v + 1] - place < count ? first[v + 1] - place : count;
-            gather(work->at, v, sides, i, stop, &batch);
-            i = stop;
-        }
-        measure_batch(&batch, count);
-        for (uint32_t i = 0; at.v < end;) {
-            const uint32_t stop = first[at.v + 1] - place < count ? first[at.v + 1] - place : count;
-            add_corners(weights, sides, &batch, i, stop, &at);
-            if (place + stop < first[at.v + 1])
-                break;
-            finish_vertex(work, weights, time, &at);
-            i = stop;
-        }
+    const uint32_t *first = work->sides.first, row_end = weights->rows->first[end];
+    uint64_t far = 0;
+    for (uint32_t v = begin, next = begin; v < end; v = next) {
+        while (next < end && first[next + 1] - first[v] <= BATCH)
+            next++;
+        far += next > v ? weigh_batch(work, weights, v, next, row_end) : weigh_long(work, weights, next++);
     }
-    return at.clamped;
+    return far;
 }
 
 static void weigh(const smooth_work *work, const flow_weights *weights)
 {
-    const double time = work->desc->step * work->desc->step / 2;
-    uint64_t clamped = 0;
-#pragma omp parallel for schedule(static) reduction(+ : clamped)
+    uint64_t far = 0;
+#pragma omp parallel for schedule(static) reduction(+ : far)
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
-        clamped +=
-            weigh_block(work, weights, time, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
-                        (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
-    work->report->clamped_vertices = clamped;
+        far += weigh_block(work, weights, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
+                           (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
+    work->report->clamped_vertices = far;
 }
+
+/* --- steps -------------------------------------------------------------------------------------------------------- */
 
 HEWN_CLONES static void sweep_block(const flow_weights *weights, const double *restrict from, double *restrict to,
                                     uint32_t begin, uint32_t end)

@@ -126,8 +126,7 @@ hewn_result hewn_smooth_lock(smooth_work *work, hewn_error *error)
     for (uint32_t v = 0; v < work->count; v++) {
         bool rim = work->flags[v] & SMOOTH_RIM;
         bool corner = rim && rims_slide && work->neighbours.first[v] == work->neighbours.first[v + 1];
-        locked +=
-            work->flags[v] & SMOOTH_USED && (smooth_freedom(work, v) <= 0 || (rim && rims_stay) || corner);
+        locked += work->flags[v] & SMOOTH_USED && (smooth_freedom(work, v) <= 0 || (rim && rims_stay) || corner);
     }
     work->report->locked_vertices = locked;
     return HEWN_OK;

@@ -6,8 +6,9 @@
 
 #include "base/alloc.h"
 #include "smooth/blocks.h"
+#include "smooth/four.h"
 
-enum { MOST_PARTS = 8, SHORT_ROW = 48, MOST_INSIDE = 8 };
+enum { MOST_PARTS = 8, SHORT_ROW = 48 };
 
 void hewn_smooth_rows_free(smooth_rows *rows)
 {
@@ -29,8 +30,8 @@ void hewn_smooth_sides_free(smooth_sides *sides)
  * of vertices of its own, so no order depends on threads. Without rows to fill they are only counted. */
 typedef struct row_filler {
     const hewn_polygons *polygons;
-    uint32_t *ends;      /* of each row, counted up while it is filled */
-    uint32_t *corners;   /* rows of corners, or */
+    uint32_t *ends;     /* of each row, counted up while it is filled */
+    uint32_t *corners;  /* rows of corners, or */
     smooth_side *sides; /* rows of their sides */
 } row_filler;
 
@@ -132,11 +133,11 @@ hewn_result hewn_smooth_sides_find(const hewn_polygons *polygons, smooth_sides *
     *out = (smooth_sides){.count = (uint32_t)polygons->vertex_count};
     hewn_result result = count_corners(polygons, &out->first, error);
     if (result == HEWN_OK) {
-        /* Rows are read MOST_INSIDE at a time, the last one too. */
+        /* Rows are read SMOOTH_EIGHT at a time, the last one too. */
         const size_t sum = out->first[out->count + 1];
-        out->items = hewn_alloc(sum + MOST_INSIDE, sizeof *out->items);
+        out->items = hewn_alloc(sum + SMOOTH_EIGHT, sizeof *out->items);
         if (out->items)
-            memset(out->items + sum, 0, MOST_INSIDE * sizeof *out->items);
+            memset(out->items + sum, 0, SMOOTH_EIGHT * sizeof *out->items);
         else
             result = out_of_memory(out->count, error);
     }
@@ -210,43 +211,37 @@ static uint32_t settle_rim(uint32_t *row, uint32_t length, uint8_t *flags)
     return rims == 0 ? kept : rims == 2 ? 2 : 0;
 }
 
-/* Eight items, in halves that any processor holds. */
-typedef int32_t four __attribute__((vector_size(4 * sizeof(int32_t))));
-typedef struct eight {
-    four half[2];
-} eight;
-
 #define SPREAD(HALF, LANE) __builtin_shufflevector(HALF, HALF, LANE, LANE, LANE, LANE)
 
 /* Whether each of the items stands exactly once in `among`. */
-static inline bool stand_once(const eight *items, const eight *among)
+static inline bool stand_once(const smooth_eight *items, const smooth_eight *among)
 {
-    const four none = {0};
-    eight found = {{none, none}};
+    const smooth_four none = {0};
+    smooth_eight found = {{none, none}};
     for (int half = 0; half < 2; half++) {
-        const four each[4] = {SPREAD(among->half[half], 0), SPREAD(among->half[half], 1),
-                              SPREAD(among->half[half], 2), SPREAD(among->half[half], 3)};
+        const smooth_four each[4] = {SPREAD(among->half[half], 0), SPREAD(among->half[half], 1),
+                                     SPREAD(among->half[half], 2), SPREAD(among->half[half], 3)};
         for (int k = 0; k < 4; k++) {
             found.half[0] += items->half[0] == each[k]; /* -1 where they are the same */
             found.half[1] += items->half[1] == each[k];
         }
     }
-    const four wrong = (found.half[0] + 1) | (found.half[1] + 1);
+    const smooth_four wrong = (found.half[0] + 1) | (found.half[1] + 1);
     return (wrong[0] | wrong[1] | wrong[2] | wrong[3]) == 0;
 }
 
 /* Around most vertices each neighbour comes after one corner and before another: then those after corners, in the order
  * of corners, are the row. Items past the length are what only they are. */
-static inline bool settle_inside(const smooth_side *sides, uint32_t length, uint32_t v, eight *out)
+static inline bool settle_inside(const smooth_side *sides, uint32_t length, uint32_t v, smooth_eight *out)
 {
-    four pairs[4];
-    eight before;
-    four itself = {0};
+    smooth_four pairs[4], itself = {0};
+    smooth_eight before;
     memcpy(pairs, sides, sizeof pairs);
     for (int half = 0; half < 2; half++) {
-        const four lane = (four){0, 1, 2, 3} + 4 * half, held = lane < (int32_t)length, other = INT32_MIN + lane;
-        const four next = __builtin_shufflevector(pairs[2 * half], pairs[2 * half + 1], 0, 2, 4, 6);
-        const four last = __builtin_shufflevector(pairs[2 * half], pairs[2 * half + 1], 1, 3, 5, 7);
+        const smooth_four lane = (smooth_four){0, 1, 2, 3} + 4 * half, held = lane < (int32_t)length;
+        const smooth_four other = INT32_MIN + lane;
+        const smooth_four next = __builtin_shufflevector(pairs[2 * half], pairs[2 * half + 1], 0, 2, 4, 6);
+        const smooth_four last = __builtin_shufflevector(pairs[2 * half], pairs[2 * half + 1], 1, 3, 5, 7);
         out->half[half] = (held & next) | (~held & other);
         before.half[half] = (held & last) | (~held & other);
         itself |= out->half[half] == (int32_t)v;
@@ -272,17 +267,14 @@ static bool settle_block(const row_settler *rows, uint32_t begin, uint32_t end)
     bool all = true;
     for (uint32_t v = begin; v < end; v++) {
         const uint32_t place = first[v], length = first[v + 1] - place;
-        eight row;
-        if (length == 0 || length > MOST_INSIDE || !settle_inside(rows->sides->items + place, length, v, &row)) {
+        smooth_eight row;
+        if (length == 0 || length > SMOOTH_EIGHT || !settle_inside(rows->sides->items + place, length, v, &row)) {
             rows->lengths[v] = NOT_SETTLED;
             all = false;
             continue;
         }
         /* What is written past a row is written over by the rows that follow in the block. */
-        if (first[end] - place >= MOST_INSIDE)
-            memcpy(rows->items + place, &row, sizeof row);
-        else
-            memcpy(rows->items + place, &row, length * sizeof *rows->items);
+        smooth_eight_copy(rows->items + place, &row, length, first[end] - place);
         rows->lengths[v] = length;
         rows->flags[v] = SMOOTH_USED;
     }

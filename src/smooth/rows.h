@@ -19,7 +19,8 @@ typedef struct smooth_side {
     uint32_t next, before;
 } smooth_side;
 
-/* The sides of the corners at each vertex, in rows of the same kind: items[first[v]] to items[first[v + 1] - 1]. Owned. */
+/* The sides of the corners at each vertex, in rows of the same kind: items[first[v]] to items[first[v + 1] - 1]. Owned.
+ */
 typedef struct smooth_sides {
     uint32_t count;
     uint32_t *first; /* count + 1 */

@@ -476,8 +476,7 @@ hewn_result hewn_mean_curvature(const hewn_polygons *polygons, double *curvature
 {
     HEWN_TRY(check_polygons(polygons, NULL, error));
     hewn_smooth_desc desc = {0};
-    smooth_work work = {
-        .polygons = polygons, .desc = &desc, .count = (uint32_t)polygons->vertex_count, .weighs = true};
+    smooth_work work = {.polygons = polygons, .desc = &desc, .count = (uint32_t)polygons->vertex_count, .weighs = true};
     frame from = find_frame(polygons);
     hewn_result result = prepare(&work, &from, error);
     if (result == HEWN_OK)

@@ -6,7 +6,8 @@
 #include "smooth/blocks.h"
 #include "smooth/work.h"
 
-/* The sum of four numbers each of the vertices that a row names, in the row's order: a position, and whatever follows. */
+/* The sum of four numbers each of the vertices that a row names, in the row's order: a position, and whatever follows.
+ */
 static HEWN_INTO_CLONES void sum_row(const double *from, const uint32_t *row, const uint32_t *end, double out[4])
 {
     double sum[4] = {0, 0, 0, 0};
@@ -19,7 +20,8 @@ static HEWN_INTO_CLONES void sum_row(const double *from, const uint32_t *row, co
 }
 
 /* From a vertex to the mean of its neighbours, times `factor` and its freedom; nowhere for one without neighbours. */
-static HEWN_INTO_CLONES void find_step(const smooth_work *work, double factor, const double *from, uint32_t v, double out[3])
+static HEWN_INTO_CLONES void find_step(const smooth_work *work, double factor, const double *from, uint32_t v,
+                                       double out[3])
 {
     const uint32_t begin = work->neighbours.first[v], end = work->neighbours.first[v + 1];
     const double *x = from + 3 * (size_t)v;
@@ -48,8 +50,7 @@ static void sweep(smooth_work *work, double factor)
 {
 #pragma omp parallel for schedule(static)
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
-        sweep_block(work, factor, work->at, work->next,
-                    (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
+        sweep_block(work, factor, work->at, work->next, (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block),
                     (uint32_t)smooth_block_begin(work->count, SMOOTH_BLOCKS, block + 1));
     smooth_swap(work);
 }
