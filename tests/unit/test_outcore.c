@@ -568,12 +568,12 @@ static void test_facets_in_one_place(void **state)
     }
     hewn_facets facets;
     hewn_store store;
-    hewn_error error = {0};
+    hewn_error refusal = {0};
     hewn_facets_begin("-", &facets);
     hewn_store_begin("-", USUAL, 1 << 16, &store);
     MUST(hewn_facets_add(&facets, &part, error));
-    assert_int_equal(hewn_facets_weld(&facets, 2 << 20, &store, &error), HEWN_OUT_OF_MEMORY);
-    assert_non_null(strstr(error.message, "in one place"));
+    assert_int_equal(hewn_facets_weld(&facets, 2 << 20, &store, &refusal), HEWN_OUT_OF_MEMORY);
+    assert_non_null(strstr(refusal.message, "in one place"));
     hewn_facets_free(&facets);
     hewn_store_free(&store);
     hewn_model_destroy(&part);
