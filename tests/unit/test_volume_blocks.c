@@ -364,12 +364,58 @@ static void test_bricks_need_rows(void **state)
     clear(&of);
 }
 
+/* Cubes that do not begin at a multiple of their side, and second ones at one place, wherever they lie. */
+static void test_places_are_checked(void **state)
+{
+    (void)state;
+    const hewn_volume volume = {.dims = {40, 40, 40}, .type = HEWN_VOXEL_FLOAT, .frame_count = 1};
+    const float background = 1, value = 2;
+    static const uint32_t sides[3] = {HEWN_UPPER_SPAN, HEWN_LOWER_SPAN, HEWN_BLOCK};
+    static const int32_t starts[][3] = {{18, 18, 18}, {0, 0, 0}, {1, 4095, -4000}, {INT32_MIN / 2, 3, 4}};
+    uint64_t random = 5;
+    for (uint32_t n = 0; n < 4000; n++) {
+        const int32_t *first = starts[n % 4];
+        const uint32_t side = sides[n / 4 % 3];
+        hewn_blocks_plan plan;
+        hewn_error error = {0};
+        int32_t origin[3], shift = 0;
+        bool added = true;
+        assert_int_equal(hewn_blocks_begin(&volume, first, &background, &plan, NULL), HEWN_OK);
+        for (int axis = 0; axis < 3; axis++) {
+            origin[axis] = floor_to(first[axis] + (int32_t)random_below(&random, 40), (int32_t)side);
+            if (n % 2 && random_below(&random, 2)) {
+                origin[axis] += (int32_t)random_below(&random, 2 * side - 1) - (int32_t)side + 1;
+                shift |= origin[axis] % (int32_t)side;
+            }
+        }
+        const hewn_result wanted = shift ? HEWN_BAD_INPUT : HEWN_OK;
+        if (side == HEWN_BLOCK && n / 12 % 2) {
+            assert_int_equal(hewn_blocks_add_block(&plan, origin, &added, &error), wanted);
+            assert_int_equal(added, plan.head.block_count);
+            assert_true(!added || hewn_blocks_hold(&plan, origin));
+            if (added) {
+                assert_int_equal(hewn_blocks_add_block(&plan, origin, &added, &error), HEWN_BAD_INPUT);
+                assert_false(added);
+                assert_int_equal(hewn_blocks_add_constant(&plan, origin, side, &value, &error), HEWN_BAD_INPUT);
+                assert_non_null(strstr(error.message, "two cubes"));
+                assert_int_equal(plan.head.block_count, 1);
+            }
+        } else {
+            assert_int_equal(hewn_blocks_add_constant(&plan, origin, side, &value, &error), wanted);
+        }
+        if (shift)
+            assert_non_null(strstr(error.message, "multiples"));
+        hewn_blocks_clear(&plan);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_same_samples),
         cmocka_unit_test(test_same_mesh),
         cmocka_unit_test(test_bricks_need_rows),
+        cmocka_unit_test(test_places_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
