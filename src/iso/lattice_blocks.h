@@ -28,6 +28,7 @@ typedef struct hewn_lattice_blocks {
     uint8_t *constants;      /* whether each constant is inside */
     hewn_lattice_block *surface;
     uint64_t count;
+    uint64_t peak; /* bytes that were in use while the surface's blocks were found, with the volume's own */
     /* The slab's are these. */
     uint64_t first, end;
     hewn_lattice_row (*rows)[HEWN_BLOCK_ROWS];
@@ -102,8 +103,9 @@ static inline hewn_lattice_row *hewn_block_row(const hewn_lattice_blocks *blocks
 uint64_t hewn_block_rim_edges(const hewn_lattice *lattice, uint64_t block, uint32_t axis, uint32_t z);
 
 /* Finds signs, and the blocks of the surface, for a lattice whose frame and threshold are known. HEWN_LIMIT where there
- * are so many that the mesh could not be numbered; HEWN_OUT_OF_MEMORY. */
-hewn_result hewn_lattice_blocks_create(hewn_lattice *lattice, hewn_error *error);
+ * are so many that the mesh could not be numbered; HEWN_OUT_OF_MEMORY, also where they need more than desc->max_memory
+ * (0: no limit); HEWN_CANCELLED. */
+hewn_result hewn_lattice_blocks_create(hewn_lattice *lattice, const hewn_volume_extract_desc *desc, hewn_error *error);
 void hewn_lattice_blocks_destroy(hewn_lattice *lattice);
 
 /* Bytes that it takes without rows, and rows of the slices [begin, end) and the one after. */
