@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/order.h"
 #include "base/progress.h"
 #include "iso/lattice_blocks.h"
 
@@ -17,7 +18,7 @@ enum { MANY_CUBES = 1024, MANY_ROOTS = 1 << 16 };
  * it is sorted, and its place. */
 enum { BLOCK_BYTES = 3 * sizeof(uint64_t) + sizeof(hewn_lattice_block) };
 
-static const uint64_t COLUMN = 0x0101010101010101u; /* bit 0 of each row of a slice */
+static const uint64_t COLUMN = HEWN_BLOCK_COLUMN;
 
 /* --- signs -------------------------------------------------------------------------------------------------------- */
 
@@ -282,12 +283,6 @@ static hewn_result check_limit(const block_search *search, hewn_error *error)
 
 /* --- their order -------------------------------------------------------------------------------------------------- */
 
-static int by_key(const void *a, const void *b)
-{
-    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
-}
-
 static hewn_result join(block_list *all, const block_list *own)
 {
     if (own->result != HEWN_OK || own->count == 0)
@@ -341,7 +336,7 @@ static hewn_result search_all(block_search *search, hewn_error *error)
         search->cube_count = 0;
     }
     if (search->all.count > 1)
-        qsort(search->all.keys, search->all.count, sizeof *search->all.keys, by_key);
+        qsort(search->all.keys, search->all.count, sizeof *search->all.keys, hewn_order_uint64);
     return HEWN_OK;
 }
 

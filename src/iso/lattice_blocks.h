@@ -14,6 +14,9 @@
 /* Rows of samples (or cells) of a block: number j + 8 k. */
 enum { HEWN_BLOCK_ROWS = HEWN_BLOCK * HEWN_BLOCK };
 
+/* The first place of each row of a slice. */
+#define HEWN_BLOCK_COLUMN ((uint64_t)0x0101010101010101u)
+
 /* A block of the surface. `ahead`: the first one that lies no less far along i in the bars at (j + 1, k), (j, k + 1)
  * and (j + 1, k + 1). If it is not in that bar at all, there is nothing to be named in it. */
 typedef struct hewn_lattice_block {
@@ -91,6 +94,23 @@ static inline void hewn_block_slices(const hewn_lattice *lattice, const hewn_lat
     const int64_t lo = begin - start, hi = end - start;
     out[0] = lo > 0 ? (uint32_t)(lo < HEWN_BLOCK ? lo : HEWN_BLOCK) : 0;
     out[1] = hi < HEWN_BLOCK ? (uint32_t)(hi > 0 ? hi : 0) : HEWN_BLOCK;
+}
+
+/* Where the layer of blocks (of one k) that begins with block `first` ends, or the bar; at `end` in any case. */
+static inline uint64_t hewn_block_layer_end(const hewn_lattice_blocks *blocks, uint64_t first, uint64_t end)
+{
+    uint64_t at = first + 1;
+    while (at < end && blocks->surface[at].place[2] == blocks->surface[first].place[2])
+        at++;
+    return at;
+}
+
+static inline uint64_t hewn_block_bar_end(const hewn_lattice_blocks *blocks, uint64_t first, uint64_t layer_end)
+{
+    uint64_t at = first + 1;
+    while (at < layer_end && blocks->surface[at].place[1] == blocks->surface[first].place[1])
+        at++;
+    return at;
 }
 
 static inline hewn_lattice_row *hewn_block_row(const hewn_lattice_blocks *blocks, uint64_t block, uint32_t y,
