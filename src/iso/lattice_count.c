@@ -73,14 +73,6 @@ uint32_t hewn_lattice_patch(const hewn_lattice *lattice, uint32_t pattern, uint3
 
 /* --- counts ------------------------------------------------------------------------------------------------------- */
 
-static uint32_t ones(uint64_t bits)
-{
-    uint32_t count = 0;
-    for (; bits; bits &= bits - 1)
-        count++;
-    return count;
-}
-
 static void count_edges(const hewn_lattice *lattice, uint32_t j, uint32_t k, hewn_lattice_row *row)
 {
     const uint64_t *here = hewn_lattice_bits(lattice, j, k);
@@ -88,9 +80,9 @@ static void count_edges(const hewn_lattice *lattice, uint32_t j, uint32_t k, hew
     const uint64_t *above = k + 1 < lattice->dims[2] ? hewn_lattice_bits(lattice, j, k + 1) : here;
     for (uint32_t word = 0; word < lattice->words; word++) {
         uint64_t along = (here[word] ^ hewn_lattice_next(here, word)) & hewn_lattice_mask(word, lattice->dims[0] - 1);
-        row->vertices[0] += ones(along);
-        row->vertices[1] += ones(here[word] ^ beside[word]);
-        row->vertices[2] += ones(here[word] ^ above[word]);
+        row->vertices[0] += hewn_lattice_ones(along);
+        row->vertices[1] += hewn_lattice_ones(here[word] ^ beside[word]);
+        row->vertices[2] += hewn_lattice_ones(here[word] ^ above[word]);
     }
 }
 
