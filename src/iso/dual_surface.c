@@ -409,7 +409,7 @@ static hewn_result emit_on_host(const emission *run, hewn_method method, uint32_
     if (keep == HEWN_KEEP_ALL)
         memcpy(run->records->mapped, run->buffers[0].mapped, run->buffers[0].size);
     HEWN_TRY(solve_crossings(run, error));
-    hewn_emission sums = {0}, others = {0};
+    hewn_emission sums = {0};
     const hewn_placing placing = {.extractor = run->extractor,
                                   .bricks = run->bricks,
                                   .dual = &view,
@@ -417,8 +417,7 @@ static hewn_result emit_on_host(const emission *run, hewn_method method, uint32_
                                   .normals = run->buffers[1].mapped,
                                   .method = method,
                                   .summary = run->summary->address};
-    HEWN_TRY(hewn_host_place(&placing, own->vertices[0], own->vertices[1], workspace, &sums, error));
-    HEWN_TRY(hewn_host_place(&placing, own->vertices[1], run->surface->vertex_count, workspace, &others, error));
+    HEWN_TRY(hewn_host_place(&placing, own->vertices, run->surface->vertex_count, workspace, &sums, error));
     uint32_t first = own->part ? (uint32_t)own->bricks[0] : 0;
     hewn_host_dual_quads(&view, first, own->part ? (uint32_t)own->bricks[1] : run->bricks->count);
     hewn_emission seen = {0};

@@ -1,11 +1,12 @@
 #include "iso/host_place.h"
 
 #include "base/error.h"
+#include "gpu/device.h"
 #include "iso/host_search.h"
 
 /* Vertices that are placed together: so few that what is known of them stays in a processor's cache, and so many that
  * few dispatches do. Below the other number it does not pay to wake other threads. */
-enum { BLOCK = 16384, ALONE = 256 };
+enum { BLOCK = 16384, LEAST_BLOCK = 8, ALONE = 256 };
 
 /* A vertex that is farther than this off a surface that is not smooth there has lost something. */
 static const float LOST = 0.05f, UNSEEN = 3.0e38f;
@@ -27,8 +28,8 @@ typedef struct question {
 
 typedef struct placement {
     const hewn_placing *placing;
-    uint64_t first; /* of the block */
-    uint32_t count;
+    uint64_t first;        /* of the block */
+    uint32_t count, block; /* how many it has, and at most */
     work *works;
     uint32_t *active, *counts; /* works that go on, and how many questions each has */
     uint32_t active_count;
@@ -164,7 +165,7 @@ static hewn_result ask_device(const placement *run, uint32_t questions, hewn_err
 static void begin_block(placement *run, uint64_t first, uint64_t end)
 {
     run->first = first;
-    run->count = run->active_count = (uint32_t)(end - first < BLOCK ? end - first : BLOCK);
+    run->count = run->active_count = (uint32_t)(end - first < run->block ? end - first : run->block);
 #pragma omp parallel for schedule(static) if (run->count >= ALONE)
     for (uint32_t i = 0; i < run->count; i++) {
         run->active[i] = i;
@@ -200,9 +201,26 @@ static void end_block(const placement *run, hewn_emission *sums)
     sums->max_residual = residual;
 }
 
+/* Bytes for each vertex of a block. */
+static uint64_t bytes_each(const placement *run)
+{
+    uint64_t questions = run->placing->method == HEWN_METHOD_NETS ? 1 : HEWN_SEARCH_QUESTIONS;
+    return sizeof(work) + 2 * sizeof(uint32_t) + questions * (sizeof(question) + sizeof(vec));
+}
+
+/* Where memory is limited, an eighth of what is left will do. */
+static uint32_t choose_block(const placement *run, uint64_t vertices)
+{
+    const hewn_device *device = run->placing->extractor->device;
+    uint64_t left = device->most_bytes > device->bytes ? device->most_bytes - device->bytes : 0;
+    uint64_t fits = device->most_bytes > 0 ? left / 8 / bytes_each(run) : BLOCK, count = fits < BLOCK ? fits : BLOCK;
+    count = count > LEAST_BLOCK ? count : LEAST_BLOCK;
+    return (uint32_t)(vertices < count ? vertices : count);
+}
+
 static hewn_result take_memory(placement *run, uint64_t vertices, hewn_workspace *workspace, hewn_error *error)
 {
-    uint64_t count = vertices < BLOCK ? vertices : BLOCK;
+    uint64_t count = run->block = choose_block(run, vertices);
     uint64_t most = count * (run->placing->method == HEWN_METHOD_NETS ? 1 : HEWN_SEARCH_QUESTIONS);
     hewn_buffer *works, *active, *counts, *questions, *answers;
     HEWN_TRY(hewn_workspace_take(workspace, "searches for vertices", count * sizeof(work), HEWN_BUFFER_UPLOAD, &works,
@@ -220,21 +238,28 @@ static hewn_result take_memory(placement *run, uint64_t vertices, hewn_workspace
     return HEWN_OK;
 }
 
-hewn_result hewn_host_place(const hewn_placing *placing, uint64_t first, uint64_t end, hewn_workspace *workspace,
+static hewn_result place_range(placement *run, uint64_t first, uint64_t end, hewn_emission *sums, hewn_error *error)
+{
+    for (; first < end; first += run->count) {
+        begin_block(run, first, end);
+        for (uint32_t questions; (questions = prepare_questions(run)) > 0;) {
+            write_questions(run);
+            HEWN_TRY(ask_device(run, questions, error));
+            take_answers(run);
+        }
+        end_block(run, sums);
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_host_place(const hewn_placing *placing, const uint64_t own[2], uint64_t end, hewn_workspace *workspace,
                             hewn_emission *sums, hewn_error *error)
 {
     placement run = {.placing = placing};
-    if (first == end)
+    hewn_emission others = {0};
+    if (own[0] == end)
         return HEWN_OK;
-    HEWN_TRY(take_memory(&run, end - first, workspace, error));
-    for (; first < end; first += run.count) {
-        begin_block(&run, first, end);
-        for (uint32_t questions; (questions = prepare_questions(&run)) > 0;) {
-            write_questions(&run);
-            HEWN_TRY(ask_device(&run, questions, error));
-            take_answers(&run);
-        }
-        end_block(&run, sums);
-    }
-    return HEWN_OK;
+    HEWN_TRY(take_memory(&run, end - own[0], workspace, error));
+    HEWN_TRY(place_range(&run, own[0], own[1], sums, error));
+    return place_range(&run, own[1], end, &others, error);
 }

@@ -18,9 +18,9 @@ typedef struct hewn_placing {
     uint64_t summary; /* address of words where the device notes that it cut loops */
 } hewn_placing;
 
-/* Places vertices `first` up to before `end`, and adds them to `sums`. They are the same for any number of threads.
- * Device errors. */
-hewn_result hewn_host_place(const hewn_placing *placing, uint64_t first, uint64_t end, hewn_workspace *workspace,
+/* Places vertices from own[0] up to before `end`, and adds those before own[1] to `sums`. They are the same for any
+ * number of threads and however much memory there is. Device errors. */
+hewn_result hewn_host_place(const hewn_placing *placing, const uint64_t own[2], uint64_t end, hewn_workspace *workspace,
                             hewn_emission *sums, hewn_error *error);
 
 #endif
