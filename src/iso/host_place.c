@@ -1,12 +1,15 @@
 #include "iso/host_place.h"
 
+#include <omp.h>
+#include <pthread.h>
+
 #include "base/error.h"
 #include "gpu/device.h"
 #include "iso/host_search.h"
 
-/* Vertices that are placed together: so few that what is known of them stays in a processor's cache, and so many that
- * few dispatches do. Below the other number it does not pay to wake other threads. */
-enum { BLOCK = 16384, LEAST_BLOCK = 8, ALONE = 256 };
+/* Vertices that a thread places together: so few that what is known of them stays in a processor's cache, and so many
+ * that few dispatches do. All threads together have no more than the last of these, unless there are very many. */
+enum { BLOCK = 16384, LEAST_BLOCK = 8, TOGETHER = 65536, LEAST_SHARE = 1024 };
 
 /* A vertex that is farther than this off a surface that is not smooth there has lost something. */
 static const float LOST = 0.05f, UNSEEN = 3.0e38f;
@@ -26,14 +29,32 @@ typedef struct question {
     uint32_t slot;
 } question;
 
-typedef struct placement {
+_Static_assert(sizeof(question) == sizeof(vec), "questions and answers begin at the same places");
+
+/* What the threads share. Each places a block by itself, and they ask the device by turns: so while it answers one of
+ * them, others have work. Waiting in turns for all of a team would keep its threads busy with waiting. */
+typedef struct crew {
     const hewn_placing *placing;
-    uint64_t first;        /* of the block */
-    uint32_t count, block; /* how many it has, and at most */
+    uint64_t own_end; /* vertices before this one count */
+    uint32_t threads, block;
+    work *works; /* of all, and so on */
+    uint32_t *active, *counts;
+    const hewn_buffer *questions, *answers;
+    pthread_mutex_t turn; /* for the device and for what follows */
+    hewn_result result;
+    hewn_error *error;
+} crew;
+
+/* One thread's share. */
+typedef struct placement {
+    crew *crew;
+    const hewn_placing *placing;
+    uint64_t first; /* of the block */
+    uint32_t count;
     work *works;
     uint32_t *active, *counts; /* works that go on, and how many questions each has */
     uint32_t active_count;
-    const hewn_buffer *questions, *answers;
+    uint64_t question_bytes; /* where its questions and answers begin */
 } placement;
 
 static const struct hewn_grid *grid_of(const placement *run)
@@ -104,7 +125,6 @@ static void write_vertex(const placement *run, uint32_t i)
 static uint32_t prepare_questions(placement *run)
 {
     uint32_t total = 0, kept = 0;
-#pragma omp parallel for schedule(static) if (run->active_count >= ALONE)
     for (uint32_t k = 0; k < run->active_count; k++)
         run->counts[k] = hewn_search_next(&run->works[run->active[k]].search);
     for (uint32_t k = 0; k < run->active_count; k++) {
@@ -120,10 +140,9 @@ static uint32_t prepare_questions(placement *run)
 
 static void write_questions(const placement *run)
 {
-#pragma omp parallel for schedule(static) if (run->active_count >= ALONE)
     for (uint32_t k = 0; k < run->active_count; k++) {
         const work *own = &run->works[run->active[k]];
-        question *out = (question *)run->questions->mapped + own->question;
+        question *out = (question *)((char *)run->crew->questions->mapped + run->question_bytes) + own->question;
         vec asked[HEWN_SEARCH_QUESTIONS];
         uint32_t count = hewn_search_ask(&own->search, asked);
         for (uint32_t i = 0; i < count; i++) {
@@ -135,14 +154,14 @@ static void write_questions(const placement *run)
 
 static void take_answers(const placement *run)
 {
-#pragma omp parallel for schedule(static) if (run->active_count >= ALONE)
     for (uint32_t k = 0; k < run->active_count; k++) {
         work *own = &run->works[run->active[k]];
-        hewn_search_take(&own->search, grid_of(run), (const vec *)run->answers->mapped + own->question);
+        hewn_search_take(&own->search, grid_of(run),
+                         (const vec *)((const char *)run->crew->answers->mapped + run->question_bytes) + own->question);
     }
 }
 
-static hewn_result ask_device(const placement *run, uint32_t questions, hewn_error *error)
+static hewn_result dispatch(const placement *run, uint32_t questions, hewn_error *error)
 {
     const hewn_placing *placing = run->placing;
     const hewn_extractor *extractor = placing->extractor;
@@ -150,8 +169,8 @@ static hewn_result ask_device(const placement *run, uint32_t questions, hewn_err
                                               .count = questions,
                                               .beyond = placing->bricks->beyond,
                                               .bricks = placing->bricks->list->address,
-                                              .questions = run->questions->address,
-                                              .answers = run->answers->address,
+                                              .questions = run->crew->questions->address + run->question_bytes,
+                                              .answers = run->crew->answers->address + run->question_bytes,
                                               .summary = placing->summary};
     hewn_commands *commands;
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
@@ -160,13 +179,24 @@ static hewn_result ask_device(const placement *run, uint32_t questions, hewn_err
     return hewn_commands_submit(&commands, NULL, error);
 }
 
+/* The first failure is everybody's. */
+static bool ask_device(const placement *run, uint32_t questions)
+{
+    crew *all = run->crew;
+    pthread_mutex_lock(&all->turn);
+    if (all->result == HEWN_OK)
+        all->result = dispatch(run, questions, all->error);
+    bool answered = all->result == HEWN_OK;
+    pthread_mutex_unlock(&all->turn);
+    return answered;
+}
+
 /* --- blocks ------------------------------------------------------------------------------------------------------- */
 
 static void begin_block(placement *run, uint64_t first, uint64_t end)
 {
     run->first = first;
-    run->count = run->active_count = (uint32_t)(end - first < run->block ? end - first : run->block);
-#pragma omp parallel for schedule(static) if (run->count >= ALONE)
+    run->count = run->active_count = (uint32_t)(end - first);
     for (uint32_t i = 0; i < run->count; i++) {
         run->active[i] = i;
         begin_vertex(run, i);
@@ -175,10 +205,6 @@ static void begin_block(placement *run, uint64_t first, uint64_t end)
 
 static void end_block(const placement *run, hewn_emission *sums)
 {
-    uint32_t caps = 0, edges = 0, corners = 0, planes = 0, lost = 0;
-    float residual = sums->max_residual;
-#pragma omp parallel for schedule(static) if (run->count >= ALONE) reduction(+ : caps, edges, corners, planes, lost)   \
-    reduction(max : residual)
     for (uint32_t i = 0; i < run->count; i++) {
         const work *own = &run->works[i];
         const hewn_search *search = &own->search;
@@ -186,42 +212,58 @@ static void end_block(const placement *run, hewn_emission *sums)
         bool feature = search->rank >= 2 && search->sharp && off <= LOST;
         bool rough = length3(own->along) <= 0.8f * own->count;
         write_vertex(run, i);
-        caps += own->capped;
-        residual = !own->capped && off <= UNSEEN && off > residual ? off : residual;
-        edges += feature && search->rank == 2;
-        corners += feature && search->rank == 3;
-        planes += search->found;
-        lost += search->missed || (run->placing->method == HEWN_METHOD_DC && off > LOST && off <= UNSEEN && rough);
+        if (run->first + i >= run->crew->own_end)
+            continue;
+        sums->caps += own->capped;
+        sums->max_residual = !own->capped && off <= UNSEEN ? most(sums->max_residual, off) : sums->max_residual;
+        sums->edge_vertices += feature && search->rank == 2;
+        sums->corner_vertices += feature && search->rank == 3;
+        sums->planes_found += search->found;
+        sums->features_lost +=
+            search->missed || (run->placing->method == HEWN_METHOD_DC && off > LOST && off <= UNSEEN && rough);
     }
-    sums->caps += caps;
-    sums->edge_vertices += edges;
-    sums->corner_vertices += corners;
-    sums->planes_found += planes;
-    sums->features_lost += lost;
-    sums->max_residual = residual;
 }
 
-/* Bytes for each vertex of a block. */
-static uint64_t bytes_each(const placement *run)
+static void place_block(placement *run, uint64_t first, uint64_t end, hewn_emission *sums)
 {
-    uint64_t questions = run->placing->method == HEWN_METHOD_NETS ? 1 : HEWN_SEARCH_QUESTIONS;
-    return sizeof(work) + 2 * sizeof(uint32_t) + questions * (sizeof(question) + sizeof(vec));
+    begin_block(run, first, end);
+    for (uint32_t questions; (questions = prepare_questions(run)) > 0;) {
+        write_questions(run);
+        if (!ask_device(run, questions))
+            return;
+        take_answers(run);
+    }
+    end_block(run, sums);
+}
+
+/* --- all of them -------------------------------------------------------------------------------------------------- */
+
+static uint64_t questions_each(const crew *all)
+{
+    return all->placing->method == HEWN_METHOD_NETS ? 1 : HEWN_SEARCH_QUESTIONS;
 }
 
 /* Where memory is limited, an eighth of what is left will do. */
-static uint32_t choose_block(const placement *run, uint64_t vertices)
+static void choose_blocks(crew *all, uint64_t vertices)
 {
-    const hewn_device *device = run->placing->extractor->device;
+    const hewn_device *device = all->placing->extractor->device;
+    uint64_t each = sizeof(work) + 2 * sizeof(uint32_t) + questions_each(all) * (sizeof(question) + sizeof(vec));
     uint64_t left = device->most_bytes > device->bytes ? device->most_bytes - device->bytes : 0;
-    uint64_t fits = device->most_bytes > 0 ? left / 8 / bytes_each(run) : BLOCK, count = fits < BLOCK ? fits : BLOCK;
-    count = count > LEAST_BLOCK ? count : LEAST_BLOCK;
-    return (uint32_t)(vertices < count ? vertices : count);
+    uint64_t together = device->most_bytes > 0 && left / 8 / each < TOGETHER ? left / 8 / each : TOGETHER;
+    uint64_t threads = (uint64_t)omp_get_max_threads();
+    threads = together / LEAST_SHARE < threads ? together / LEAST_SHARE : threads;
+    threads = vertices / LEAST_SHARE < threads ? vertices / LEAST_SHARE : threads;
+    threads = threads > 0 ? threads : 1;
+    uint64_t block = together / threads < BLOCK ? together / threads : BLOCK;
+    uint64_t share = (vertices + threads - 1) / threads;
+    block = block > LEAST_BLOCK ? block : LEAST_BLOCK;
+    all->threads = (uint32_t)threads;
+    all->block = (uint32_t)(share < block ? share : block);
 }
 
-static hewn_result take_memory(placement *run, uint64_t vertices, hewn_workspace *workspace, hewn_error *error)
+static hewn_result take_memory(crew *all, hewn_workspace *workspace, hewn_error *error)
 {
-    uint64_t count = run->block = choose_block(run, vertices);
-    uint64_t most = count * (run->placing->method == HEWN_METHOD_NETS ? 1 : HEWN_SEARCH_QUESTIONS);
+    uint64_t count = (uint64_t)all->threads * all->block, most = count * questions_each(all);
     hewn_buffer *works, *active, *counts, *questions, *answers;
     HEWN_TRY(hewn_workspace_take(workspace, "searches for vertices", count * sizeof(work), HEWN_BUFFER_UPLOAD, &works,
                                  error));
@@ -230,36 +272,64 @@ static hewn_result take_memory(placement *run, uint64_t vertices, hewn_workspace
     HEWN_TRY(
         hewn_workspace_take(workspace, "questions", most * sizeof(question), HEWN_BUFFER_UPLOAD, &questions, error));
     HEWN_TRY(hewn_workspace_take(workspace, "answers", most * sizeof(vec), HEWN_BUFFER_READBACK, &answers, error));
-    run->works = works->mapped;
-    run->active = active->mapped;
-    run->counts = counts->mapped;
-    run->questions = questions;
-    run->answers = answers;
+    all->works = works->mapped;
+    all->active = active->mapped;
+    all->counts = counts->mapped;
+    all->questions = questions;
+    all->answers = answers;
     return HEWN_OK;
 }
 
-static hewn_result place_range(placement *run, uint64_t first, uint64_t end, hewn_emission *sums, hewn_error *error)
+static placement share_of(crew *all, uint32_t thread)
 {
-    for (; first < end; first += run->count) {
-        begin_block(run, first, end);
-        for (uint32_t questions; (questions = prepare_questions(run)) > 0;) {
-            write_questions(run);
-            HEWN_TRY(ask_device(run, questions, error));
-            take_answers(run);
+    uint64_t before = (uint64_t)thread * all->block;
+    return (placement){.crew = all,
+                       .placing = all->placing,
+                       .works = all->works + before,
+                       .active = all->active + before,
+                       .counts = all->counts + before,
+                       .question_bytes = before * questions_each(all) * sizeof(question)};
+}
+
+static void add(hewn_emission *to, const hewn_emission *from)
+{
+    to->caps += from->caps;
+    to->edge_vertices += from->edge_vertices;
+    to->corner_vertices += from->corner_vertices;
+    to->planes_found += from->planes_found;
+    to->features_lost += from->features_lost;
+    to->max_residual = most(to->max_residual, from->max_residual);
+}
+
+static void place_all(crew *all, uint64_t first, uint64_t end, hewn_emission *sums)
+{
+    uint64_t blocks = (end - first + all->block - 1) / all->block;
+#pragma omp parallel num_threads((int)all->threads)
+    {
+        placement run = share_of(all, (uint32_t)omp_get_thread_num());
+        hewn_emission own = {0};
+#pragma omp for schedule(dynamic, 1)
+        for (uint64_t i = 0; i < blocks; i++) {
+            uint64_t begin = first + i * all->block;
+            place_block(&run, begin, end - begin < all->block ? end : begin + all->block, &own);
         }
-        end_block(run, sums);
+        pthread_mutex_lock(&all->turn);
+        add(sums, &own);
+        pthread_mutex_unlock(&all->turn);
     }
-    return HEWN_OK;
 }
 
 hewn_result hewn_host_place(const hewn_placing *placing, const uint64_t own[2], uint64_t end, hewn_workspace *workspace,
                             hewn_emission *sums, hewn_error *error)
 {
-    placement run = {.placing = placing};
-    hewn_emission others = {0};
+    crew all = {.placing = placing, .own_end = own[1], .error = error};
     if (own[0] == end)
         return HEWN_OK;
-    HEWN_TRY(take_memory(&run, end - own[0], workspace, error));
-    HEWN_TRY(place_range(&run, own[0], own[1], sums, error));
-    return place_range(&run, own[1], end, &others, error);
+    choose_blocks(&all, end - own[0]);
+    HEWN_TRY(take_memory(&all, workspace, error));
+    if (pthread_mutex_init(&all.turn, NULL) != 0)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a lock");
+    place_all(&all, own[0], end, sums);
+    pthread_mutex_destroy(&all.turn);
+    return all.result;
 }
