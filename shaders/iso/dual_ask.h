@@ -1,4 +1,4 @@
-/* GLSL only: how a dual method's vertices ask the field, which may be in lists. Included after iso/dual_place.h.
+/* GLSL only: how a dual method's vertices ask the field, which may be in lists. Included after iso/dual_seen.h.
  *
  * Where subgroups read lists together, neighbours want different ones: then they go through them all, least number
  * first, and each takes what it wanted. So all of a subgroup must come here together. */

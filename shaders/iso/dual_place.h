@@ -1,4 +1,5 @@
 /* GLSL only: a cell as the place of a dual method's vertex. Included where `push` is a hewn_dual_vertex_push. */
+#include "iso/dual_seen.h"
 
 /* A cell's coordinates are in units of cells from its lowest corner. A vertex stays strictly within its cell, so that
  * those of two cells never fall together: 2^-15 of a cell from its faces, or two spacings of floats where these are
@@ -37,27 +38,6 @@ vec3 out_of_cell(Cell cell, vec3 at)
     precise vec3 place = cell.corner + push.grid.cell * at;
     return clamp(place, vec3(push.grid.origin[0], push.grid.origin[1], push.grid.origin[2]),
                  vec3(push.grid.far[0], push.grid.far[1], push.grid.far[2]));
-}
-
-/* The surface as seen from a place in the cell: unit normal and how far off it is, in cells, to first order. Where the
- * bounds cut it, it is that of max(f, bounds). The distance is negative inside, and the normal 0 where the field has no
- * direction. */
-vec4 surface_from(vec3 place)
-{
-    vec4 gradient = field_gradient(place.x, place.y, place.z);
-    float size = length(gradient.xyz);
-    bool sloped = size > 0.0 && size <= 3.0e38 && abs(gradient.w) <= 3.0e38;
-    vec4 seen = sloped ? gradient / size : vec4(0.0);
-    seen.w /= push.grid.cell;
-    for (uint i = 0u; i < 3u; i++) {
-        float below = (push.grid.origin[i] - place[i]) / push.grid.cell;
-        float above = (place[i] - push.grid.far[i]) / push.grid.cell;
-        if (push.grid.open == 0u && sloped && max(below, above) > seen.w) {
-            seen = vec4(0.0, 0.0, 0.0, max(below, above));
-            seen[i] = below > above ? -1.0 : 1.0;
-        }
-    }
-    return seen;
 }
 
 /* Whether a crossing on this axis is where the surface was cut at the bounds. */

@@ -7,8 +7,9 @@
 #include "iso/dual_cells.h"
 #include "iso/extractor.h"
 #include "iso/fixed_kernel.h"
+#include "iso/host_place.h"
 
-extern const char hewn_text_iso_head[], hewn_text_nets_vertices[], hewn_text_dual_vertices[];
+extern const char hewn_text_iso_head[], hewn_text_nets_vertices[], hewn_text_dual_vertices[], hewn_text_dual_asked[];
 
 HEWN_SHADER(dual_link);
 HEWN_SHADER(dual_classify);
@@ -41,21 +42,31 @@ static hewn_result create_fixed(hewn_extractor *extractor, hewn_error *error)
     return hewn_fixed_kernels_create(extractor->device, kernels, sizeof kernels / sizeof *kernels, error);
 }
 
-static hewn_program **vertex_program(hewn_dual_programs *own, hewn_method method)
+/* Where the host places vertices, the device only answers it. */
+static hewn_program **vertex_program(hewn_extractor *extractor, hewn_method method)
 {
-    return method == HEWN_METHOD_NETS ? &own->nets : &own->dc;
+    hewn_dual_programs *own = &extractor->dual;
+    return extractor->on_host ? &own->asked : method == HEWN_METHOD_NETS ? &own->nets : &own->dc;
 }
 
 static hewn_result create_vertices(hewn_extractor *extractor, hewn_method method, hewn_error *error)
 {
-    size_t bytes = sizeof(struct hewn_dual_vertex_push);
-    const uint32_t near = hewn_extractor_flavour(extractor);
-    hewn_kernel_desc nets = {"nets_vertices", hewn_text_iso_head, hewn_text_nets_vertices,
-                             HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | near, (uint32_t)bytes};
-    hewn_kernel_desc dc = {"dual_vertices", hewn_text_iso_head, hewn_text_dual_vertices,
-                           HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | near, (uint32_t)bytes};
-    return hewn_code_program(extractor->device, extractor->code, method == HEWN_METHOD_NETS ? &nets : &dc,
-                             vertex_program(&extractor->dual, method), error);
+    hewn_kernel_desc desc = {.head = hewn_text_iso_head,
+                             .flavours =
+                                 HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | hewn_extractor_flavour(extractor),
+                             .push_bytes = sizeof(struct hewn_dual_vertex_push)};
+    if (extractor->on_host) {
+        desc.name = "dual_asked";
+        desc.body = hewn_text_dual_asked;
+        desc.push_bytes = sizeof(struct hewn_dual_asked_push);
+    } else if (method == HEWN_METHOD_NETS) {
+        desc.name = "nets_vertices";
+        desc.body = hewn_text_nets_vertices;
+    } else {
+        desc.name = "dual_vertices";
+        desc.body = hewn_text_dual_vertices;
+    }
+    return hewn_code_program(extractor->device, extractor->code, &desc, vertex_program(extractor, method), error);
 }
 
 hewn_result hewn_dual_prepare(hewn_extractor *extractor, hewn_method method, hewn_error *error)
@@ -68,7 +79,7 @@ hewn_result hewn_dual_prepare(hewn_extractor *extractor, hewn_method method, hew
         if (result != HEWN_OK)
             hewn_dual_clear(extractor);
     }
-    if (result == HEWN_OK && !*vertex_program(&extractor->dual, method))
+    if (result == HEWN_OK && !*vertex_program(extractor, method))
         result = create_vertices(extractor, method, error);
     return result;
 }
@@ -77,7 +88,7 @@ void hewn_dual_clear(hewn_extractor *extractor)
 {
     hewn_dual_programs *own = &extractor->dual;
     hewn_program **programs[] = {&own->link, &own->classify, &own->spread, &own->quads,
-                                 &own->fans, &own->nets,     &own->dc};
+                                 &own->fans, &own->nets,     &own->dc,     &own->asked};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         hewn_program_destroy(extractor->device, programs[i]);
     hewn_buffer_destroy(extractor->device, &own->table);
@@ -148,16 +159,50 @@ static hewn_result take_totals(const uint32_t totals[6], hewn_surface *out, hewn
     return HEWN_OK;
 }
 
+static hewn_host_dual view_on_host(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                   const hewn_bricks *bricks, const hewn_surface *surface)
+{
+    hewn_host_dual view = {.bricks = {.count = bricks->count,
+                                      .bricks = bricks->list->mapped,
+                                      .links = surface->links->mapped,
+                                      .signs = surface->signs->mapped,
+                                      .edges = surface->edges->mapped,
+                                      .vertex_bases = surface->crossing_bases->mapped,
+                                      .triangle_bases = surface->triangle_bases->mapped},
+                           .table = extractor->dual.table.mapped,
+                           .grid = *grid,
+                           .lower = surface->lower->mapped,
+                           .loops = surface->loops->mapped,
+                           .vertex_bases = surface->vertex_bases->mapped};
+    memcpy(view.bricks.cells, grid->cells, sizeof view.bricks.cells);
+    return view;
+}
+
+/* Counts on the device, as part of the commands that made the signs. */
+static hewn_result count_on_device(const hewn_extractor *extractor, const struct hewn_grid *grid,
+                                   const hewn_bricks *bricks, const hewn_surface *surface, hewn_workspace *workspace,
+                                   hewn_commands *commands, hewn_buffer **results, hewn_error *error)
+{
+    hewn_buffer *totals, *scratch;
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 24, HEWN_BUFFER_DEVICE, &totals, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "totals", 24, HEWN_BUFFER_READBACK, results, error));
+    HEWN_TRY(hewn_workspace_take(workspace, "scratch of sums", hewn_scan_scratch_bytes(bricks->count),
+                                 HEWN_BUFFER_DEVICE, &scratch, error));
+    const hewn_buffer *counts[] = {surface->crossing_bases, surface->vertex_bases, surface->triangle_bases};
+    record_classify(extractor, grid, bricks, surface, commands);
+    for (uint32_t i = 0; i < 3; i++)
+        hewn_scan_record(extractor->scan, commands, counts[i]->address, bricks->count,
+                         totals->address + (uint64_t)8 * i, scratch->address);
+    hewn_commands_copy(commands, totals, 0, *results, 0, 24);
+    return HEWN_OK;
+}
+
 hewn_result hewn_dual_classify(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                                hewn_workspace *workspace, hewn_surface *out, hewn_error *error)
 {
-    hewn_buffer *totals, *results, *scratch;
+    hewn_buffer *results = NULL;
+    uint32_t totals[6];
     HEWN_TRY(take_surface(bricks, workspace, out, error));
-    HEWN_TRY(hewn_workspace_take(workspace, "totals", 24, HEWN_BUFFER_DEVICE, &totals, error));
-    HEWN_TRY(hewn_workspace_take(workspace, "totals", 24, HEWN_BUFFER_READBACK, &results, error));
-    HEWN_TRY(hewn_workspace_take(workspace, "scratch of sums", hewn_scan_scratch_bytes(bricks->count),
-                                 HEWN_BUFFER_DEVICE, &scratch, error));
-    const hewn_buffer *counts[] = {out->crossing_bases, out->vertex_bases, out->triangle_bases};
     hewn_commands *commands;
     double times[2] = {0};
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
@@ -165,14 +210,22 @@ hewn_result hewn_dual_classify(const hewn_extractor *extractor, const struct hew
     hewn_surface_record_signs(extractor, grid, bricks, out, commands);
     hewn_commands_mark(commands);
     hewn_surface_record_links(extractor, bricks, out, commands);
-    record_classify(extractor, grid, bricks, out, commands);
-    for (uint32_t i = 0; i < 3; i++)
-        hewn_scan_record(extractor->scan, commands, counts[i]->address, bricks->count,
-                         totals->address + (uint64_t)8 * i, scratch->address);
-    hewn_commands_copy(commands, totals, 0, results, 0, 24);
+    hewn_result result = HEWN_OK;
+    if (!extractor->on_host)
+        result = count_on_device(extractor, grid, bricks, out, workspace, commands, &results, error);
+    if (result != HEWN_OK) {
+        hewn_commands_destroy(&commands);
+        return result;
+    }
     HEWN_TRY(hewn_commands_submit(&commands, times, error));
+    if (extractor->on_host) {
+        const hewn_host_dual view = view_on_host(extractor, grid, bricks, out);
+        hewn_host_dual_count(&view, totals);
+    } else {
+        memcpy(totals, results->mapped, sizeof totals);
+    }
     out->sign_seconds = times[1];
-    return take_totals(results->mapped, out, error);
+    return take_totals(totals, out, error);
 }
 
 /* --- emission ----------------------------------------------------------------------------------------------------- */
@@ -312,26 +365,79 @@ static void read_summary(const uint32_t *words, hewn_emission *out)
         out->cut = out->cut || words[i * HEWN_SUMMARY_WORDS + HEWN_SUMMARY_CUT] > 0;
 }
 
+static hewn_result emit_on_device(const emission *run, hewn_method method, uint32_t keep, hewn_emission *out,
+                                  hewn_error *error)
+{
+    hewn_commands *commands;
+    HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
+    hewn_commands_fill(commands, run->summary, 0, run->summary->size, 0);
+    record_spread(run, commands);
+    if (keep == HEWN_KEEP_ALL)
+        hewn_commands_copy(commands, &run->buffers[0], 0, run->records, 0, run->buffers[0].size);
+    record_crossings(run, commands);
+    record_vertices(run, method, commands);
+    record_quads(run, keep, commands);
+    hewn_commands_copy(commands, run->summary, 0, run->results, 0, run->summary->size);
+    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
+    read_summary(run->results->mapped, out);
+    return HEWN_OK;
+}
+
+static hewn_result solve_crossings(const emission *run, hewn_error *error)
+{
+    hewn_commands *commands;
+    HEWN_TRY(hewn_commands_begin(run->extractor->device, &commands, error));
+    hewn_commands_fill(commands, run->summary, 0, run->summary->size, 0);
+    record_crossings(run, commands);
+    return hewn_commands_submit(&commands, NULL, error);
+}
+
+/* The device solves crossings and answers; all else is the host's. */
+static hewn_result emit_on_host(const emission *run, hewn_method method, uint32_t keep, hewn_workspace *workspace,
+                                hewn_emission *out, hewn_error *error)
+{
+    const hewn_own *own = &run->own;
+    hewn_host_dual view = view_on_host(run->extractor, run->grid, run->bricks, run->surface);
+    view.bricks.vertices = run->points->mapped;
+    view.points = run->points->mapped;
+    view.positions = run->buffers[0].mapped;
+    view.passed = run->passed->mapped;
+    view.indices = run->buffers[2].mapped;
+    view.crossings = run->crossing->mapped;
+    view.keep = keep;
+    hewn_host_dual_spread(&view);
+    if (keep == HEWN_KEEP_ALL)
+        memcpy(run->records->mapped, run->buffers[0].mapped, run->buffers[0].size);
+    HEWN_TRY(solve_crossings(run, error));
+    hewn_emission sums = {0};
+    const hewn_placing placing = {.extractor = run->extractor,
+                                  .bricks = run->bricks,
+                                  .dual = &view,
+                                  .point_normals = run->normals->mapped,
+                                  .normals = run->buffers[1].mapped,
+                                  .method = method,
+                                  .summary = run->summary->address};
+    HEWN_TRY(hewn_host_place(&placing, own->vertices, run->surface->vertex_count, workspace, &sums, error));
+    uint32_t first = own->part ? (uint32_t)own->bricks[0] : 0;
+    hewn_host_dual_quads(&view, first, own->part ? (uint32_t)own->bricks[1] : run->bricks->count);
+    hewn_emission seen = {0};
+    read_summary(run->summary->mapped, &seen);
+    sums.capped_crossings = seen.capped_crossings;
+    sums.cut = seen.cut;
+    *out = sums;
+    return HEWN_OK;
+}
+
 hewn_result hewn_dual_emit(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                            const hewn_surface *surface, hewn_method method, const hewn_buffer buffers[3],
                            hewn_workspace *workspace, uint32_t keep, hewn_dual_hermite *kept, hewn_emission *out,
                            hewn_error *error)
 {
     emission run = {.extractor = extractor, .grid = grid, .bricks = bricks, .surface = surface, .buffers = buffers};
-    hewn_commands *commands;
     run.own = hewn_surface_own(surface);
     HEWN_TRY(take_emission(&run, keep, workspace, error));
-    HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
-    hewn_commands_fill(commands, run.summary, 0, run.summary->size, 0);
-    record_spread(&run, commands);
-    if (keep == HEWN_KEEP_ALL)
-        hewn_commands_copy(commands, &buffers[0], 0, run.records, 0, buffers[0].size);
-    record_crossings(&run, commands);
-    record_vertices(&run, method, commands);
-    record_quads(&run, keep, commands);
-    hewn_commands_copy(commands, run.summary, 0, run.results, 0, run.summary->size);
-    HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
-    read_summary(run.results->mapped, out);
+    HEWN_TRY(extractor->on_host ? emit_on_host(&run, method, keep, workspace, out, error)
+                                : emit_on_device(&run, method, keep, out, error));
     if (keep != HEWN_KEEP_NONE)
         *kept = (hewn_dual_hermite){run.points, run.normals, run.records, run.crossing};
     return HEWN_OK;

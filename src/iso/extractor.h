@@ -24,7 +24,8 @@ typedef struct hewn_suspect_programs {
 typedef struct hewn_dual_programs {
     hewn_buffer table; /* hewn_dual_table */
     hewn_program *link, *classify, *spread, *quads, *fans;
-    hewn_program *nets, *dc; /* vertices by each method */
+    hewn_program *nets, *dc; /* vertices by each method, */
+    hewn_program *asked;     /* or, where the host places them, what it asks */
 } hewn_dual_programs;
 
 struct hewn_extractor {

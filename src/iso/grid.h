@@ -13,6 +13,14 @@ _Static_assert(HEWN_MAX_RESOLUTION <= 8 * 1023, "a brick's coordinate has ten bi
  * bounds are too coarse to keep the vertices of a cell apart. */
 hewn_result hewn_grid_lay(const hewn_extract_desc *desc, struct hewn_grid *out, hewn_box *grown, hewn_error *error);
 
+/* Where sample i of an axis is: the same floats as shaders/iso/grid.h has. */
+static inline float hewn_grid_sample(const struct hewn_grid *grid, uint32_t axis, uint32_t i)
+{
+    uint32_t whole = i > grid->rim ? i - grid->rim : 0;
+    float offset = grid->cell * (float)whole;
+    return i + grid->rim >= grid->cells[axis] ? grid->far[axis] : grid->origin[axis] + offset;
+}
+
 /* Bricks along an axis. */
 uint32_t hewn_grid_bricks(const struct hewn_grid *grid, int axis);
 

@@ -209,6 +209,9 @@ static void test_dual_kernels(void **state)
           N(hewn_dual_vertex_push, beyond), A(hewn_dual_vertex_push, bricks), A(hewn_dual_vertex_push, links),
           A(hewn_dual_vertex_push, edges), A(hewn_dual_vertex_push, points), A(hewn_dual_vertex_push, point_normals),
           A(hewn_dual_vertex_push, positions), A(hewn_dual_vertex_push, normals), A(hewn_dual_vertex_push, summary));
+    CHECK(hewn_dual_asked_push, GRID(hewn_dual_asked_push), N(hewn_dual_asked_push, count),
+          N(hewn_dual_asked_push, beyond), A(hewn_dual_asked_push, bricks), A(hewn_dual_asked_push, questions),
+          A(hewn_dual_asked_push, answers), A(hewn_dual_asked_push, summary));
     CHECK(hewn_dual_quad_push, GRID(hewn_dual_quad_push), N(hewn_dual_quad_push, count), N(hewn_dual_quad_push, keep),
           A(hewn_dual_quad_push, bricks), A(hewn_dual_quad_push, links), A(hewn_dual_quad_push, passed),
           A(hewn_dual_quad_push, edges), A(hewn_dual_quad_push, loops), A(hewn_dual_quad_push, points),

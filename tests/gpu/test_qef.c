@@ -1,9 +1,11 @@
-/* The least squares of planes in a cell on the device, against an oracle in double that works by other means. */
+/* The least squares of planes in a cell, on the device and on the host, against an oracle in double that works by other
+ * means. */
 #include <math.h>
 
 #include "gpu_test.h"
 
 #include "../oracle/qef.h"
+#include "iso/host_qef.h"
 
 extern const char hewn_text_qef_probe[];
 
@@ -30,6 +32,7 @@ typedef struct fixture {
     unsigned messages;
     hewn_program *program;
     hewn_buffer in, out;
+    solution *by_host; /* where the host is under test; else NULL */
     uint64_t random;
 } fixture;
 
@@ -57,8 +60,38 @@ static int close_fixture(void **state)
     return 0;
 }
 
+static int by_device(void **state)
+{
+    ((fixture *)*state)->by_host = NULL;
+    return 0;
+}
+
+static int by_host(void **state)
+{
+    static solution solutions[COUNT];
+    ((fixture *)*state)->by_host = solutions;
+    return 0;
+}
+
+static solution solve_on_host(const problem *p)
+{
+    hewn_qef qef;
+    hewn_qef_begin(&qef);
+    for (uint32_t i = 0; i < p->planes; i++)
+        (i < p->crossings ? hewn_qef_add_crossing : hewn_qef_add_plane)(&qef, vec_load(p->values[i][0]),
+                                                                        vec_load(p->values[i][1]));
+    hewn_qef_solution solved = hewn_qef_solve(&qef, vec_load(p->lo), vec_load(p->hi));
+    return (solution){{solved.at[0], solved.at[1], solved.at[2]},
+                      (float)solved.rank,
+                      {solved.free[0], solved.free[1], solved.free[2]}};
+}
+
 static const solution *solve(fixture *f, const problem *problems)
 {
+    for (int i = 0; f->by_host && i < COUNT; i++)
+        f->by_host[i] = solve_on_host(&problems[i]);
+    if (f->by_host)
+        return f->by_host;
     memcpy(f->in.mapped, problems, COUNT * sizeof *problems);
     const struct {
         uint32_t count, stride;
@@ -347,12 +380,18 @@ static void nothing_leaves_the_box(void **state)
         assert_true(got[0].at[k] == 0.5f && got[0].rank == 0);
 }
 
+#define BOTH(test)                                                                                                     \
+    {#test "_by_device", test, by_device, NULL, NULL},                                                                 \
+    {                                                                                                                  \
+#test "_by_host", test, by_host, NULL, NULL                                                                    \
+    }
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_planes_as_the_oracle), cmocka_unit_test(flat_boxes),
-        cmocka_unit_test(corners_are_exact),           cmocka_unit_test(edges_are_hit_within_the_cell),
-        cmocka_unit_test(nothing_leaves_the_box),
+        BOTH(random_planes_as_the_oracle), BOTH(flat_boxes),
+        BOTH(corners_are_exact),           BOTH(edges_are_hit_within_the_cell),
+        BOTH(nothing_leaves_the_box),
     };
     return cmocka_run_group_tests_name("qef", tests, open_fixture, close_fixture);
 }
