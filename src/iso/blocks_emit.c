@@ -201,12 +201,12 @@ static void cut_block(const hewn_lattice *lattice, uint64_t number, hewn_triangl
                 continue;
             const hewn_lattice_row *begins[4];
             find_rows(lattice, number, y, z, begins);
-            hewn_lattice_cell_row row = hewn_lattice_begin_cells(lattice, out, begins);
+            hewn_lattice_cell_row row = hewn_lattice_begin_cells(lattice, out, begins, start[1] + y, start[2] + z);
             for (; rest; rest &= rest - 1) {
                 const uint32_t x = hewn_lattice_lowest(rest);
                 const uint32_t pattern = hewn_block_pattern(&signs, z, x + HEWN_BLOCK * y);
                 const uint32_t place = hewn_lattice_patch(lattice, pattern, start[0] + x, start[1] + y, start[2] + z);
-                hewn_lattice_cut_cell(&row, pattern, lattice->table + place, turn);
+                hewn_lattice_cut_cell(&row, start[0] + x, pattern, lattice->table + place, turn);
             }
         }
     }

@@ -64,10 +64,9 @@ HEWN_LATTICE_INLINE void emit_row(edge_row *row, hewn_voxel type)
     const uint64_t *here = hewn_lattice_bits(lattice, row->j, row->k), *other = here;
     if (axis > 0)
         other = hewn_lattice_bits(lattice, row->j + (axis == 1), row->k + (axis == 2));
-    uint32_t count = axis == 0 ? lattice->dims[0] - 1 : lattice->dims[0];
     for (uint32_t word = 0; word < lattice->words; word++) {
         uint64_t next = axis == 0 ? hewn_lattice_next(here, word) : other[word];
-        uint64_t rest = (here[word] ^ next) & hewn_lattice_mask(word, count);
+        uint64_t rest = (here[word] ^ next) & hewn_lattice_edges(lattice, axis, row->j, row->k, word);
         for (; rest; rest &= rest - 1) {
             uint32_t bit = hewn_lattice_lowest(rest);
             emit_edge(row, 64 * word + bit, here[word] >> bit & 1, type);

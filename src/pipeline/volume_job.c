@@ -49,17 +49,8 @@ static hewn_result check_space(const volume_job *job, hewn_error *error)
 
 static hewn_result check_method(const hewn_volume_job_desc *desc, hewn_error *error)
 {
-    const bool known = desc->method == HEWN_METHOD_DEFAULT || desc->method == HEWN_METHOD_MC33 ||
-                       desc->method == HEWN_METHOD_MARCHING_CUBES || desc->method == HEWN_METHOD_NETS;
-    if (!known)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc or nets, not by %s",
-                         hewn_method_name(desc->method) ? hewn_method_name(desc->method) : "another method");
-    if (desc->method == HEWN_METHOD_NETS && desc->open)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "nets close the surface at the border; mc33 and mc can leave it open");
-    if (desc->method == HEWN_METHOD_NETS && desc->max_memory > 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "nets are made in one piece; mc33 and mc keep to a limit of memory");
+    if (desc->method != HEWN_METHOD_DEFAULT && !hewn_method_name(desc->method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc, nets or dc");
     return HEWN_OK;
 }
 
