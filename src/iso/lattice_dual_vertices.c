@@ -1,13 +1,18 @@
 /* Where the vertices of dual meshes lie, and which quads they belong to. */
 #include <math.h>
+#include <string.h>
 
 #include "iso/cube.h"
 #include "iso/lattice_dual.h"
 #include "iso/quadric.h"
 
-/* What nearness to the mean of the crossings weighs beside the planes: as much as a direction in which normals vary by
- * a twentieth. Planes of samples are no more certain than that. */
-static const double HOLD = 0.05 * 0.05;
+/* What nearness to the mean of the crossings weighs beside the planes, at the least: as much as a direction in which
+ * normals vary by a fourteenth. */
+static const double HOLD = 0.07 * 0.07;
+
+/* Planes of samples are not certain. Where they miss each other by this part of a voxel, they weigh as little as what
+ * nearness to the mean does; the weight of that grows with the square. */
+static const double CERTAIN = 0.1;
 
 /* A cell that is at hand. */
 typedef struct dual_cell {
@@ -74,6 +79,18 @@ static void find_extent(const dual_cell *cell, int axis, double length, hewn_box
     out->hi[axis] = hi * length;
 }
 
+/* The best point of the box; `voxel` is a length. */
+static void solve(const hewn_quadric *planes, const hewn_box *box, double voxel, double out[3])
+{
+    double mean[3];
+    hewn_quadric_centre(planes, mean);
+    memcpy(out, mean, sizeof mean);
+    hewn_quadric_minimise(planes, HOLD, box, out);
+    const double doubt = hewn_quadric_distance(planes, out) / (CERTAIN * voxel);
+    memcpy(out, mean, sizeof mean);
+    hewn_quadric_minimise(planes, HOLD + doubt * doubt, box, out);
+}
+
 /* Where the planes of the crossings meet: in a frame along the lattice's axes with the mesh's lengths. There the
  * product of a step and a plane's normal is the distance that it is in the mesh's space. */
 static void find_meeting(const dual_cell *cell, uint32_t edges, double out[3])
@@ -107,8 +124,7 @@ static void find_meeting(const dual_cell *cell, uint32_t edges, double out[3])
     double found[3];
     for (int axis = 0; axis < 3; axis++)
         find_extent(cell, axis, length[axis], &box);
-    hewn_quadric_centre(&planes, found);
-    hewn_quadric_minimise(&planes, HOLD, &box, found);
+    solve(&planes, &box, fmin(length[0], fmin(length[1], length[2])), found);
     for (int i = 0; i < 3; i++) {
         out[i] = corner[i];
         for (int axis = 0; axis < 3; axis++)

@@ -33,13 +33,14 @@ static uint64_t kept_bytes(const stream *of)
     return of->samples + signs + table + patches + (of->sink->bytes ? of->sink->bytes(of->sink->user, NULL) : 0);
 }
 
-/* Samples that a slab looks at: normals reach one slice farther than edges. */
+/* Samples that a slab looks at: normals reach one slice farther than edges, planes that are to meet two. */
 static void find_samples(const stream *of, uint32_t begin, uint32_t end, uint32_t range[2])
 {
     const hewn_lattice *lattice = &of->run.lattice;
-    uint32_t all = lattice->volume->dims[2], first = begin > 1 + lattice->rim ? begin - 1 - lattice->rim : 0;
+    const uint32_t all = lattice->volume->dims[2], reach = lattice->planes ? 2 : 1;
+    const uint32_t first = begin > reach + lattice->rim ? begin - reach - lattice->rim : 0;
     range[0] = first < all ? first : all;
-    range[1] = all - range[0] > end - begin + 4 ? range[0] + (end - begin) + 4 : all;
+    range[1] = all - range[0] > end - begin + 2 + 2 * reach ? range[0] + (end - begin) + 2 + 2 * reach : all;
 }
 
 static uint64_t file_bytes(const stream *of, uint32_t begin, uint32_t end)
