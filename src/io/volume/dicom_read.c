@@ -215,7 +215,7 @@ static hewn_result refuse_several(const series *all, hewn_error *error)
             used += (size_t)snprintf(text + used, sizeof text - used, "%s%s (%s, %zu files)", used > 0 ? "; " : "",
                                      all->slices[i].series, all->slices[i].facts.modality, same);
     }
-    return hewn_fail_at(error, HEWN_BAD_INPUT, all->folder, 0, "the folder has %zu series; choose one by its UID: %s",
+    return hewn_fail_at(error, HEWN_BAD_INPUT, all->folder, 0, "the folder has %zu series; choose one with --series UID: %s",
                         different, text);
 }
 
