@@ -180,7 +180,8 @@ static hewn_result read_request(const hewn_arguments *arguments, request *out, h
     if (space && !hewn_space_find(space, &desc->space))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--space is ras, lps, gltf, world or voxel, not '%s'", space);
     if (space && desc->to_up)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--space says where the axes are, so it does not go with --to-up");
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "--space says where the axes are, so it does not go with --to-up");
     desc->names = hewn_arguments_value(arguments, "names");
     desc->complex = hewn_arguments_has(arguments, "complex");
     desc->relaxations = DEFAULT_RELAXATIONS;

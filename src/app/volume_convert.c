@@ -117,7 +117,8 @@ static hewn_result read_surface(const hewn_arguments *arguments, hewn_volume_job
     const char *threads = hewn_arguments_value(arguments, "threads");
     const char *memory = hewn_arguments_value(arguments, "max-memory");
     if (method && !hewn_method_named(method, &desc->method))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method of a volume is mc33, mc, nets or dc, not '%s'", method);
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method of a volume is mc33, mc, nets or dc, not '%s'",
+                         method);
     if (inside && strcmp(inside, "above") != 0 && strcmp(inside, "below") != 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--inside is above or below, not '%s'", inside);
     if (inside)

@@ -92,8 +92,7 @@ static void count_edges(const hewn_lattice *lattice, uint32_t j, uint32_t k, hew
     for (uint32_t word = 0; word < lattice->words; word++) {
         const uint64_t others[3] = {hewn_lattice_next(here, word), beside[word], above[word]};
         for (uint32_t axis = 0; axis < 3; axis++)
-            row->vertices[axis] +=
-                ones((here[word] ^ others[axis]) & hewn_lattice_edges(lattice, axis, j, k, word));
+            row->vertices[axis] += ones((here[word] ^ others[axis]) & hewn_lattice_edges(lattice, axis, j, k, word));
     }
 }
 

@@ -42,8 +42,8 @@ hewn_lattice_cell_row hewn_lattice_begin_cells(const hewn_lattice *lattice, hewn
     return row;
 }
 
-/* The vertices on the edges of a cell, as iso/cube.h numbers them; what is not crossed has some other number. Cells of a
- * rim that repeats have the same edges on both sides. */
+/* The vertices on the edges of a cell, as iso/cube.h numbers them; what is not crossed has some other number. Cells of
+ * a rim that repeats have the same edges on both sides. */
 static void name_edges(hewn_lattice_cell_row *row, uint32_t i_of_cell, uint32_t pattern, uint32_t names[16])
 {
     const hewn_lattice *lattice = row->lattice;

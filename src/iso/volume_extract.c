@@ -242,8 +242,7 @@ hewn_result hewn_volume_extraction_explain_empty(const hewn_volume_extraction *r
 
 /* --- the mesh ----------------------------------------------------------------------------------------------------- */
 
-static hewn_result allocate(uint64_t vertices, uint64_t triangles, bool normals, hewn_triangles *out,
-                            hewn_error *error)
+static hewn_result allocate(uint64_t vertices, uint64_t triangles, bool normals, hewn_triangles *out, hewn_error *error)
 {
     out->vertex_count = vertices;
     out->triangle_count = triangles;
@@ -270,8 +269,8 @@ static hewn_result emit_dual(hewn_volume_extraction *run, uint64_t first, hewn_t
     hewn_triangles crossings = {0};
     hewn_result result = allocate(count, 0, lattice->normals, &crossings, error);
     if (result == HEWN_OK)
-        result = allocate(lattice->after.centres - lattice->before.centres, 2 * count, !run->desc->no_normals, out,
-                          error);
+        result =
+            allocate(lattice->after.centres - lattice->before.centres, 2 * count, !run->desc->no_normals, out, error);
     if (result == HEWN_OK) {
         hewn_lattice_emit_vertices(lattice, &crossings);
         lattice->crossings = &crossings;

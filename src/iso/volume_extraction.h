@@ -35,8 +35,8 @@ hewn_result hewn_volume_extraction_stage(hewn_volume_extraction *run, const char
 
 /* Makes the mesh of the slab whose rows were counted, without what other slabs have: vertices on edges, with those of
  * the slice after it, then vertices in cells. Of dual meshes there are vertices in cells alone, and six indices a
- * crossing; those of crossings from number `first` of the whole on are triangles. `out` is to be destroyed also after an
- * error. HEWN_OUT_OF_MEMORY, HEWN_CANCELLED. */
+ * crossing; those of crossings from number `first` of the whole on are triangles. `out` is to be destroyed also after
+ * an error. HEWN_OUT_OF_MEMORY, HEWN_CANCELLED. */
 hewn_result hewn_volume_extraction_emit(hewn_volume_extraction *run, uint64_t first, hewn_triangles *out,
                                         hewn_error *error);
 

@@ -1,8 +1,8 @@
 /* A volume's mesh in parts, slabs of slices. A first pass counts what each slice has; then it is known how many
  * vertices lie on edges, which is where those in cells begin, and how many slices a part may have.
  *
- * Quads of dual meshes lie between cells of their slice and of the one before it. So a part's slab begins a slice before
- * the part, and what that slice has is found twice. */
+ * Quads of dual meshes lie between cells of their slice and of the one before it. So a part's slab begins a slice
+ * before the part, and what that slice has is found twice. */
 #include <string.h>
 
 #include "base/alloc.h"

@@ -18,8 +18,8 @@ hewn_result hewn_frame_choose(hewn_mesh_format to, hewn_frame wanted, hewn_frame
 /* The unit of that frame for a model: a 3MF file without a unit is in millimetres, and has none for kilometres. */
 const hewn_unit *hewn_frame_unit(hewn_mesh_format to, hewn_frame frame, const hewn_model *model);
 
-/* Whether a file can have a volume's mesh in a space and a unit (NULL: any): GLB is in glTF's and in metres, voxels have
- * no unit. HEWN_INVALID_ARGUMENT. */
+/* Whether a file can have a volume's mesh in a space and a unit (NULL: any): GLB is in glTF's and in metres, voxels
+ * have no unit. HEWN_INVALID_ARGUMENT. */
 hewn_result hewn_frame_check_space(hewn_mesh_format to, hewn_space space, const hewn_unit *unit, hewn_error *error);
 
 /* The space that a volume's mesh is written in, where nobody says: glTF's in GLB, else RAS or the volume's world. */

@@ -24,7 +24,7 @@ typedef struct hewn_label_job_desc {
     hewn_mesh_format to; /* HEWN_MESH_UNKNOWN: from the output's extension; in a folder STL */
     bool complex;        /* write the mesh that the shells share, with the labels on both sides of each face */
     const hewn_unit
-        *unit; /* what the volume is in, whatever it says; NULL: as it says, else mm where it is anatomical */
+        *unit;        /* what the volume is in, whatever it says; NULL: as it says, else mm where it is anatomical */
     hewn_space space; /* to write in; HEWN_SPACE_DEFAULT: glTF's in GLB, else RAS, or the volume's world */
     const hewn_unit *to_unit;
     const hewn_axis *to_up;

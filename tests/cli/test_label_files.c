@@ -307,8 +307,9 @@ static void test_spaces(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_spaces), cmocka_unit_test(test_glb),        cmocka_unit_test(test_files),   cmocka_unit_test(test_together),
-        cmocka_unit_test(test_simplified), cmocka_unit_test(test_refused), cmocka_unit_test(test_brain),
+        cmocka_unit_test(test_spaces),   cmocka_unit_test(test_glb),        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_together), cmocka_unit_test(test_simplified), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_brain),
     };
     return cmocka_run_group_tests_name("label_files", tests, NULL, NULL);
 }

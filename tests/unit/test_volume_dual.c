@@ -183,9 +183,8 @@ static void test_random_volumes(void **state)
     for (uint64_t seed = 0; seed < seeds; seed++) {
         const bool above = seed / 4 % 2, open = seed / 8 % 2;
         make_volume(&of, (random_kind)(seed % RANDOM_KINDS), seed);
-        const hewn_volume_extract_desc desc = {.method = methods[seed / 2 % 2],
-                                               .open = open,
-                                               .inside = above ? HEWN_INSIDE_ABOVE : HEWN_INSIDE_BELOW};
+        const hewn_volume_extract_desc desc = {
+            .method = methods[seed / 2 % 2], .open = open, .inside = above ? HEWN_INSIDE_ABOVE : HEWN_INSIDE_BELOW};
         hewn_certificate certificate;
         hewn_triangles mesh = make_dual(&of.volume, &desc, &certificate);
         assert_int_equal(2 * check_quads(&of, above, open, &mesh), mesh.triangle_count);
@@ -287,8 +286,8 @@ static void test_ball(void **state)
 
 /* --- edges and corners -------------------------------------------------------------------------------------------- */
 
-/* A box in a lattice whose axes are neither as long as each other nor upright. Samples are distances to its sides, so that
- * differences are what its planes are, but for next to its edges. */
+/* A box in a lattice whose axes are neither as long as each other nor upright. Samples are distances to its sides, so
+ * that differences are what its planes are, but for next to its edges. */
 typedef struct box_volume {
     hewn_volume volume;
     float samples[SIDE * SIDE * SIDE];
@@ -314,7 +313,8 @@ static void make_box(box_volume *out)
         const double at[3] = {n % SIDE, n / SIDE % SIDE, n / SIDE / SIDE};
         float p[3];
         for (int i = 0; i < 3; i++)
-            p[i] = (float)(place[4 * i] * at[0] + place[4 * i + 1] * at[1] + place[4 * i + 2] * at[2] + place[4 * i + 3]);
+            p[i] =
+                (float)(place[4 * i] * at[0] + place[4 * i + 1] * at[1] + place[4 * i + 2] * at[2] + place[4 * i + 3]);
         out->samples[n] = (float)off_box(out->half, p);
     }
 }
