@@ -5,13 +5,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "hewn/clusters.h"
 #include "hewn/distance.h"
 #include "hewn/io.h"
 #include "hewn/refinement.h"
 #include "hewn/simplify.h"
+#include "samples.h"
+
+#include "base/clock.h"
 
 static void need(hewn_result result, const hewn_error *error)
 {
@@ -28,11 +30,7 @@ typedef struct moment {
 
 static moment now(void)
 {
-    struct timespec processor, wall;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &processor);
-    clock_gettime(CLOCK_MONOTONIC, &wall);
-    return (moment){(double)processor.tv_sec + 1e-9 * (double)processor.tv_nsec,
-                    (double)wall.tv_sec + 1e-9 * (double)wall.tv_nsec};
+    return (moment){bench_processor_now(), hewn_clock_now()};
 }
 
 static void print_time(const char *what, moment begin)

@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include "hewn/mesh.h"
 #include "mesh_peers.h"
@@ -115,10 +114,10 @@ static void run_once(contender *entry, const peer_input *input, int run)
 {
     size_t before = heap_bytes();
     double begin = hewn_clock_now();
-    clock_t cpu_begin = clock();
+    double cpu_begin = bench_processor_now();
     void *mesh = entry->build(input);
     entry->seconds[run] = hewn_clock_now() - begin;
-    entry->cpu_seconds[run] = (double)(clock() - cpu_begin) / CLOCKS_PER_SEC;
+    entry->cpu_seconds[run] = bench_processor_now() - cpu_begin;
     entry->bytes = heap_bytes() - before;
     if (!mesh) {
         fprintf(stderr, "bench: %s refused the mesh\n", entry->name);

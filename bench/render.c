@@ -7,13 +7,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "eval/lists.h"
 #include "hewn/hewn.h"
+#include "samples.h"
 
 enum { SIDE = 1024, MOST_SCENES = 64 };
 
@@ -48,14 +48,6 @@ static void start_without_caches(void)
     if (!mkdtemp(caches) || setenv("XDG_CACHE_HOME", caches, 1) != 0 || unsetenv("MESA_SHADER_CACHE_DIR") != 0)
         exit(1);
     atexit(remove_caches);
-}
-
-/* Seconds of processors, of all threads. */
-static double processor_seconds(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 static float *make_points(void)
@@ -139,12 +131,12 @@ static void render_scene(const char *path, uint32_t width, uint32_t height, int 
     desc.render.width = width;
     desc.render.height = height;
     for (int i = 0; i <= runs; i++) {
-        double began = processor_seconds(), took;
+        double began = bench_processor_now(), took;
         if (hewn_render_file(&desc, &report, &error) != HEWN_OK) {
             printf("  %-24s %s\n", path, error.message);
             return;
         }
-        took = processor_seconds() - began;
+        took = bench_processor_now() - began;
         if (i == 0) {
             first = report.seconds;
             first_spent = took;

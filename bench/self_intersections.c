@@ -4,14 +4,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "hewn/check.h"
 #include "hewn/io.h"
+#include "samples.h"
 
-enum { AROUND = 1000, ACROSS = 500, MOST_RUNS = 99 };
+enum { AROUND = 1000, ACROSS = 500 };
 
 static void stop(const char *what)
 {
@@ -70,14 +70,6 @@ static void shuffle(hewn_triangles *mesh)
     hewn_free(number);
 }
 
-static double processor_time(void)
-{
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
 /* The best of several runs. */
 static void measure(const char *name, const hewn_triangles *mesh, int runs)
 {
@@ -85,11 +77,11 @@ static void measure(const char *name, const hewn_triangles *mesh, int runs)
     uint64_t found = 0;
     for (int run = 0; run < runs; run++) {
         hewn_error error = {0};
-        double began = hewn_clock_now(), spent = processor_time();
+        double began = hewn_clock_now(), spent = bench_processor_now();
         if (hewn_triangles_count_self_intersections(mesh, 0, NULL, NULL, &found, &error) != HEWN_OK)
             stop(error.message);
         wall = fmin(wall, hewn_clock_now() - began);
-        processor = fmin(processor, processor_time() - spent);
+        processor = fmin(processor, bench_processor_now() - spent);
     }
     printf("%-40s %9llu triangles %9llu pairs %8.3f s %8.3f s of processor\n", name,
            (unsigned long long)mesh->triangle_count, (unsigned long long)found, wall, processor);

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include "hewn/check.h"
 #include "hewn/distance.h"
@@ -35,10 +34,10 @@ static simplified hewn(const peer_input *input, uint64_t target)
     hewn_simplified made;
     hewn_error error;
     const double begin = hewn_clock_now();
-    const clock_t processor = clock();
+    const double processor = bench_processor_now();
     if (hewn_polygons_simplify(&polygons, &(hewn_simplify_desc){.faces = target}, &made, NULL, &error) != HEWN_OK)
         give_up(&error);
-    const double seconds = hewn_clock_now() - begin, all = (double)(clock() - processor) / CLOCKS_PER_SEC;
+    const double seconds = hewn_clock_now() - begin, all = bench_processor_now() - processor;
     hewn_free(made.vertex_origins);
     hewn_free(made.face_origins);
     return (simplified){made.vertex_count, made.face_count, made.positions, made.corners, seconds, all};

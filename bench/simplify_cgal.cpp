@@ -7,8 +7,8 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <ctime>
 
+#include "samples.h"
 #include "simplify_peers.h"
 
 namespace simplification = CGAL::Surface_mesh_simplification;
@@ -27,11 +27,11 @@ static Mesh make(const peer_input *input)
     return mesh;
 }
 
-static simplified finish(Mesh &mesh, std::chrono::steady_clock::time_point begin, std::clock_t processor)
+static simplified finish(Mesh &mesh, std::chrono::steady_clock::time_point begin, double processor)
 {
     simplified out = {};
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
+    out.processor_seconds = bench_processor_now() - processor;
     mesh.collect_garbage();
     out.vertex_count = mesh.number_of_vertices();
     out.triangle_count = mesh.number_of_faces();
@@ -52,7 +52,7 @@ simplified cgal_garland_heckbert(const peer_input *input, uint64_t target)
 {
     Mesh mesh = make(input);
     auto begin = std::chrono::steady_clock::now();
-    std::clock_t processor = std::clock();
+    double processor = bench_processor_now();
     simplification::Count_stop_predicate<Mesh> stop(target * 3 / 2);
     simplification::GarlandHeckbert_plane_policies<Mesh, Kernel> policies(mesh);
     simplification::Bounded_normal_change_filter<> filter;
@@ -66,7 +66,7 @@ simplified cgal_lindstrom_turk(const peer_input *input, uint64_t target)
 {
     Mesh mesh = make(input);
     auto begin = std::chrono::steady_clock::now();
-    std::clock_t processor = std::clock();
+    double processor = bench_processor_now();
     simplification::Count_stop_predicate<Mesh> stop(target * 3 / 2);
     simplification::edge_collapse(mesh, stop);
     return finish(mesh, begin, processor);

@@ -2,9 +2,9 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <ctime>
 #include <vector>
 
+#include "samples.h"
 #include "simplify_peers.h"
 
 /* Vertices of the result are those of the input; unused ones are left out. */
@@ -13,12 +13,12 @@ simplified meshoptimizer(const peer_input *input, uint64_t target)
     std::vector<float> positions(input->positions, input->positions + 3 * input->vertex_count);
     std::vector<unsigned> indices(3 * input->triangle_count);
     auto begin = std::chrono::steady_clock::now();
-    std::clock_t processor = std::clock();
+    double processor = bench_processor_now();
     size_t count = meshopt_simplify(indices.data(), input->indices, indices.size(), positions.data(),
                                     input->vertex_count, 3 * sizeof(float), 3 * target, 1e9F);
     simplified out = {};
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
+    out.processor_seconds = bench_processor_now() - processor;
     std::vector<uint32_t> number(input->vertex_count, ~0U);
     out.triangle_count = count / 3;
     out.positions = static_cast<double *>(malloc(input->vertex_count * 3 * sizeof(double)));

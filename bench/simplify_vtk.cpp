@@ -6,8 +6,8 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <ctime>
 
+#include "samples.h"
 #include "simplify_peers.h"
 
 simplified vtk_quadric(const peer_input *input, uint64_t target)
@@ -30,11 +30,11 @@ simplified vtk_quadric(const peer_input *input, uint64_t target)
     filter->SetInputData(data);
     filter->SetTargetReduction(1 - static_cast<double>(target) / static_cast<double>(input->triangle_count));
     auto begin = std::chrono::steady_clock::now();
-    std::clock_t processor = std::clock();
+    double processor = bench_processor_now();
     filter->Update();
     simplified out = {};
     out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    out.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
+    out.processor_seconds = bench_processor_now() - processor;
     vtkPolyData *result = filter->GetOutput();
     out.vertex_count = static_cast<uint64_t>(result->GetNumberOfPoints());
     out.triangle_count = static_cast<uint64_t>(result->GetNumberOfPolys());

@@ -5,40 +5,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "hewn/hewn.h"
+#include "samples.h"
 #include "vdb_openvdb.h"
 
 #include "base/clock.h"
 
-enum { THREADS = 2, MOST_RUNS = 99 };
-
-static int by_value(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(double *values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, by_value);
-    return values[count / 2];
-}
-
-/* Processor seconds of this process and those that it waited for: they tell more than the clock on a busy machine. */
-static double processor_now(void)
-{
-    struct rusage own, children;
-    getrusage(RUSAGE_SELF, &own);
-    getrusage(RUSAGE_CHILDREN, &children);
-    const struct timeval *all[4] = {&own.ru_utime, &own.ru_stime, &children.ru_utime, &children.ru_stime};
-    double sum = 0;
-    for (int i = 0; i < 4; i++)
-        sum += (double)all[i]->tv_sec + 1e-6 * (double)all[i]->tv_usec;
-    return sum;
-}
+enum { THREADS = 2 };
 
 static void stop_on(hewn_result result, const hewn_error *error)
 {
@@ -73,19 +48,19 @@ static void compare(const char *path, const char *name, int runs)
     double times[TIMES][MOST_RUNS], of[TIMES], unused;
     uint64_t triangles = 0, quads = 0;
     for (int run = 0; run < runs; run++) {
-        double begin = processor_now();
+        double begin = bench_processor_now();
         triangles = run_hewn(path, true, &times[READ][run], &times[MESH][run]);
-        times[ALL][run] = processor_now() - begin;
+        times[ALL][run] = bench_processor_now() - begin;
         (void)run_hewn(path, false, &unused, &times[BARE][run]);
-        begin = processor_now();
+        begin = bench_processor_now();
         if (!vdb_openvdb_mesh(path, THREADS, &times[THEIR_READ][run], &times[THEIR_MESH][run], &quads)) {
             printf("%-16s has no grid of floats\n", name);
             return;
         }
-        times[THEIR_ALL][run] = processor_now() - begin;
+        times[THEIR_ALL][run] = bench_processor_now() - begin;
     }
     for (int what = 0; what < TIMES; what++)
-        of[what] = median(times[what], runs);
+        of[what] = bench_median(times[what], runs);
     printf(
         "%-16s %9llu triangles, read %.3f, mesh %.3f (%.3f without normals), processor %.3f | %9llu quads, read %.3f, "
         "mesh %.3f, processor %.3f | mesh %.2f (%.2f), together %.2f, processor %.2f\n",

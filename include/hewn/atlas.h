@@ -19,6 +19,8 @@ typedef enum hewn_atlas_type {
 
 /* "msdf", "sdf", "psdf", "mtsdf"; false for any other name. */
 HEWN_API bool hewn_atlas_type_named(const char *name, hewn_atlas_type *out);
+
+/* The same name; "unknown" for what is none of the above. A constant. */
 HEWN_API const char *hewn_atlas_type_name(hewn_atlas_type type);
 
 /* Zero everywhere but the characters is a sensible default. */
@@ -26,7 +28,7 @@ typedef struct hewn_atlas_desc {
     hewn_atlas_type type;
     double size;                /* of the em, in texels; 0: 32 */
     double range;               /* texels from the lowest distance to the highest that a texel can hold; 0: 4 */
-    const uint32_t *characters; /* code points; may repeat */
+    const uint32_t *characters; /* code points, at most 0x10FFFF; may repeat */
     size_t character_count;
     uint32_t width, height; /* of the image; 0: the smallest square that was found whose side is a multiple of 4 */
     bool power_of_two;      /* where they are 0: the smallest square whose side is a power of two */

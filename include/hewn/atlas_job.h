@@ -33,8 +33,8 @@ typedef struct hewn_atlas_report {
 HEWN_API void hewn_atlas_report_destroy(hewn_atlas_report *report);
 
 /* Makes an atlas and writes it. Both files appear under their names only when both are complete. The same bytes for the
- * same description. HEWN_INVALID_ARGUMENT for a description that makes no sense, HEWN_IO for a file that cannot be read
- * or written, HEWN_BAD_INPUT for a font or set of characters that cannot be used, naming the file; the errors of
+ * same description. HEWN_INVALID_ARGUMENT for a description that makes no sense, HEWN_IO for a file that cannot be
+ * written, HEWN_BAD_INPUT for a font or set of characters that cannot be read or used, naming the file; the errors of
  * hewn_atlas_create(). */
 HEWN_API hewn_result hewn_atlas_file(const hewn_atlas_job_desc *desc, hewn_atlas_report *out, hewn_error *error);
 

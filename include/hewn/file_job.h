@@ -48,8 +48,9 @@ typedef struct hewn_file_job_desc {
     const hewn_simplify_desc *simplify;   /* after that, lengths in the input's unit; its labels, frozen and progress
                                              are not looked at. NULL: no simplification */
     /* Bytes that the whole process may take at most, as the system counts what is resident, pages of files included; 0:
-     * no limit. Goes with simplification alone. What does not fit then is done in parts, with temporary files beside
-     * the output (docs/memory.md); where it fits the result is the same as without a limit. */
+     * no limit. Goes with simplification alone. What the process holds already is taken off, in steps of 24 MiB. What
+     * does not fit then is done in parts, with temporary files beside the output (docs/memory.md); where it fits the
+     * result is the same as without a limit. */
     uint64_t max_memory;
     bool check;                    /* examine what will be written, */
     bool skip_self_intersections;  /* but for these */

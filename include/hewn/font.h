@@ -56,6 +56,7 @@ typedef struct hewn_font_metrics {
     double underline_y, underline_thickness;
 } hewn_font_metrics;
 
+/* What the font file says of all its letters; cannot fail. */
 HEWN_API void hewn_font_measure(const hewn_font *font, hewn_font_metrics *out);
 
 /* How much nearer to the first one (below 0) than its advance the second of two characters comes. */

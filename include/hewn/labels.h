@@ -55,7 +55,7 @@ typedef struct hewn_label_desc {
  * nets'; for many labels Frisken 2022, 'SurfaceNets for multi-label segmentations with preservation of sharp
  * boundaries'), with more vertices in cells where one would make a shell non-manifold. A voxel reaches half way to its
  * neighbours; what touches the volume's border is closed there. The same bytes for any number of threads. Takes 2 bytes
- * a voxel and some 200 a vertex.
+ * a voxel, also of a volume in blocks, and some 200 a vertex.
  *
  * HEWN_INVALID_ARGUMENT for a frame that is not there; HEWN_BAD_INPUT for a value that is no whole number or beyond
  * 2^53, naming the voxel, or if there is no voxel of any label asked for; HEWN_LIMIT for more than 65,535 labels, 2^32

@@ -36,7 +36,8 @@ HEWN_API bool hewn_query_is_on_host(const hewn_query *query);
 typedef struct hewn_query_desc {
     double tolerance;    /* how far `low` and `high` may be apart, in scene units; 0: 1e-4 of the box's diagonal. Less
                             than 4e-6 of it is taken for that */
-    uint32_t most_boxes; /* that are divided for one answer; 0: 65,536. On devices at most 8,192 */
+    uint32_t most_boxes; /* that are divided for one answer; 0: 65,536. Devices look into fewer; what they do not
+                            complete is asked again on the host, which has all of them */
     const hewn_progress *progress; /* the stage is "query" */
 } hewn_query_desc;
 
@@ -51,22 +52,26 @@ typedef struct hewn_answer {
     bool complete; /* `low` and `high` are within the tolerance, or nothing is there */
 } hewn_answer;
 
+/* Coordinates of points, and lengths at which rays begin, are at most this. */
+#define HEWN_QUERY_FAR 1073741824.0 /* 2^30 */
+
 /* The point of the surface that is nearest to each of `count` points (x, y, z triples; anywhere, also outside of the
  * box); `high` is its distance, never below 0. `inside` is only told of points in the box. HEWN_INVALID_ARGUMENT for
- * a point that is not finite, HEWN_OUT_OF_MEMORY, HEWN_CANCELLED, device errors. */
+ * a point that is not finite or beyond HEWN_QUERY_FAR, HEWN_OUT_OF_MEMORY, HEWN_CANCELLED, device errors. */
 HEWN_API hewn_result hewn_query_nearest(hewn_query *query, const double *points, size_t count,
                                         const hewn_query_desc *desc, hewn_answer *answers, hewn_error *error);
 
 /* A ray, or a ball whose centre moves along it. */
 typedef struct hewn_ray_desc {
-    double from[3], along[3]; /* any length but 0 */
+    double from[3], along[3]; /* any finite length but 0 */
     double begin, end;        /* lengths along it from `from`, 0 or more; an `end` of 0 is as far as the box */
     double radius;            /* 0: a ray */
 } hewn_ray_desc;
 
 /* How far each ray goes, from `from`, until it enters the solid, or until the ball touches it; `point` is where. Where
  * it begins inside, or the ball touches at once, that is `begin`. HEWN_INVALID_ARGUMENT for a number that is not
- * finite, a direction of length 0, begin > end or a radius below 0. */
+ * finite, a place, beginning or radius beyond HEWN_QUERY_FAR, a direction of length 0, begin > end or a radius below 0.
+ */
 HEWN_API hewn_result hewn_query_rays(hewn_query *query, const hewn_ray_desc *rays, size_t count,
                                      const hewn_query_desc *desc, hewn_answer *answers, hewn_error *error);
 

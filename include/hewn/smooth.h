@@ -43,6 +43,8 @@ typedef enum hewn_smooth_volume {
  * step (COTAN, IMPLICIT): a length; a step smooths as a Gaussian of this standard deviation would on a flat surface,
  * that is for a time of step^2 / 2. n steps reach sqrt(n) as far. 0 stands for the mean edge. COTAN goes less far at
  * vertices where so long a step would not be stable, and counts them.
+ * remeasure: weights are measured anew before each so manyth step; 0 keeps those of the start, so that shapes are
+ * smoothed by one linear filter, which folds no triangle up that was sound (and IMPLICIT factors once).
  *
  * angle (BILATERAL): degrees; faces whose normals, noise aside, differ by much more do not mix. 0 stands for 20.
  * radius: the same for the distance between faces; 0 stands for the mean one of neighbours.
@@ -61,6 +63,7 @@ typedef struct hewn_smooth_desc {
     double strength;
     double passband;
     double step;
+    uint32_t remeasure;
     double angle;
     double radius;
     double original, push;
@@ -78,8 +81,8 @@ typedef struct hewn_smooth_report {
     uint32_t iterations;
     double strength, passband, step, angle, radius; /* in force; 0 where the method has none */
     uint64_t locked_vertices;                       /* with faces, but not free to move */
-    uint64_t clamped_vertices;                      /* whose step was shortened (COTAN), at the last iteration */
-    uint64_t closed_components;                     /* whose volume was kept */
+    uint64_t clamped_vertices;  /* whose step was shortened (COTAN), when weights were last measured */
+    uint64_t closed_components; /* whose volume was kept */
     double volume_before, volume_after;
     double area_before, area_after;
     double largest_move, mean_move; /* distances between a vertex before and after; the mean is over all */

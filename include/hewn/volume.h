@@ -159,7 +159,7 @@ typedef struct hewn_volume_bricks {
 
 enum { HEWN_BRICK_CELLS = 8 };
 
-/* HEWN_OUT_OF_MEMORY, and `*out` is zero. */
+/* HEWN_INVALID_ARGUMENT for a volume in blocks; HEWN_OUT_OF_MEMORY; then `*out` is zero. */
 HEWN_API hewn_result hewn_volume_find_bricks(const hewn_volume *volume, uint64_t frame, hewn_volume_bricks *out,
                                              hewn_error *error);
 HEWN_API void hewn_volume_bricks_destroy(hewn_volume_bricks *bricks);

@@ -71,7 +71,8 @@ typedef struct hewn_volume_extract_stats {
  * a place that is singular or not finite, or `keep` with `open`; HEWN_BAD_INPUT where there is no surface
  * (hewn_volume_range tells why), a volume of one slice is to be left open, no body that is large enough, or where the
  * place is so far from the origin that float positions cannot tell vertices apart; HEWN_LIMIT for more vertices than
- * indices can name; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. `stats` may be NULL. Safe from several threads at once. */
+ * indices can name, or a surface through more than 2^26 blocks; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. `stats` may be
+ * NULL. Safe from several threads at once. */
 HEWN_API hewn_result hewn_volume_extract(const hewn_volume *volume, const hewn_volume_extract_desc *desc,
                                          hewn_triangles *out, hewn_volume_extract_stats *stats, hewn_error *error);
 

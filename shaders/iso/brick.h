@@ -14,7 +14,7 @@ uint pack_brick(uvec3 brick)
     return brick.x | brick.y << 10 | brick.z << 20;
 }
 
-/* Seven bits an axis, which is enough for grids of up to HEWN_SHORT_CELLS. */
+/* Seven bits an axis, which is enough for grids of up to HEWN_SHORT_SAMPLES. */
 uint shorten_brick(uint packed)
 {
     return (packed & 127u) | (packed >> 10 & 127u) << 7 | (packed >> 20 & 127u) << 14;

@@ -82,7 +82,8 @@ void main()
     uint local = gl_LocalInvocationID.x, begin = HEWN_VERTICES_EACH * (invocation() - local) + local;
     float most = 0.0;
     uint caps = 0u;
-    long_bricks = max(max(push.grid.cells[0], push.grid.cells[1]), push.grid.cells[2]) > HEWN_SHORT_CELLS;
+    uint longest = max(max(push.grid.cells[0], push.grid.cells[1]), push.grid.cells[2]);
+    long_bricks = longest + push.grid.open > HEWN_SHORT_SAMPLES; /* an open grid's last samples are in bricks too */
     for (uint i = 0u; i < HEWN_VERTICES_EACH; i++) {
         uint vertex = begin + gl_WorkGroupSize.x * i;
         if (vertex < push.count)

@@ -20,6 +20,14 @@ bool holds(vec3 p)
     return all(greaterThanEqual(p, box_lo)) && all(lessThanEqual(p, box_hi));
 }
 
+/* Slopes are bounded only so far around: past that the field's value says nothing about lengths. */
+bool in_wide_box(vec3 p)
+{
+    vec3 lo = vec3(push.wide_lo[0], push.wide_lo[1], push.wide_lo[2]);
+    vec3 hi = vec3(push.wide_hi[0], push.wide_hi[1], push.wide_hi[2]);
+    return all(greaterThanEqual(p, lo)) && all(lessThanEqual(p, hi));
+}
+
 /* The first of eight places along a ray's part where the field is 0 or below, then halved; FAR_AWAY for none. */
 float find_entry(Question q, float enter, float leave)
 {
@@ -81,10 +89,9 @@ void take(float t, vec3 p, vec3 n)
     normal = n;
 }
 
-/* Looks for a place in a box that is better than all so far; false where none was found. */
-bool look(Question q, vec3 lo, vec3 hi)
+/* Looks for a place in a box that is better than all so far. What is found need not be the best there. */
+void look(Question q, vec3 lo, vec3 hi)
 {
-    float before = high;
     if (q.kind == HEWN_QUERY_RAY) {
         float leave, enter = box_enter(q, lo, hi, 0.0, leave);
         float t = enter < high ? find_entry(q, enter, leave) : FAR_AWAY;
@@ -102,7 +109,6 @@ bool look(Question q, vec3 lo, vec3 hi)
             most = 2.0 * length(aside);
         }
     }
-    return high < before;
 }
 
 /* Walks through the octree down to a level. What is not looked into because it cannot be better counts for `low` all
@@ -138,13 +144,13 @@ bool search(Question q, float known, uint levels)
         vec2 range = field_interval(vec2(lo.x, hi.x), vec2(lo.y, hi.y), vec2(lo.z, hi.z));
         if (range.x > 0.0 || (range.y < 0.0 && q.kind != HEWN_QUERY_RAY))
             continue;
-        bool last = level + 1u >= levels, found = false;
+        bool last = level + 1u >= levels;
         if (last || high - lower > 0.5 * length(size))
-            found = look(q, lo, hi);
-        if (last && !found)
+            look(q, lo, hi);
+        if (last) {
             low = min(low, lower);
-        if (last)
             continue;
+        }
         level++;
         at = part;
         turn[level] = 0u;
@@ -164,7 +170,7 @@ void main()
     float known = 0.0, far = 0.0;
     for (uint axis = 0u; axis < 3u; axis++)
         far = max(far, max(abs(start[axis]), max(abs(push.lo[axis]), abs(push.hi[axis]))));
-    float steepness = holds(start) ? push.steepness : push.wide_steepness;
+    float steepness = holds(start) ? push.steepness : in_wide_box(start) ? push.wide_steepness : 0.0;
     if (steepness > 0.0 && abs(value) < FAR_AWAY)
         known = max(0.0, ((abs(value) - 3.9e-6 * far) / steepness - q.radius) * 0.999999);
     if (q.kind != HEWN_QUERY_NEAREST) {

@@ -125,8 +125,8 @@ struct hewn_spread_push {
     HEWN_UINTS indices;  /* out: slot, sample + 512 * pattern + 131072 * triangle in each triangle's first two words */
 };
 
-/* Where no side has more cells, a brick's coordinates fit seven bits each. */
-#define HEWN_SHORT_CELLS 1024u
+/* Where no side has more samples in its bricks (hewn_grid_bricks()), their coordinates fit seven bits each. */
+#define HEWN_SHORT_SAMPLES 1024u
 
 /* Vertices that an invocation solves one after the other. */
 #define HEWN_VERTICES_EACH 16u

@@ -30,7 +30,8 @@ struct hewn_query_push {
     float tolerance;
     float fine;           /* shorter than this nothing is told apart */
     float steepness;      /* no slope in the box is more; 0: unknown */
-    float wide_steepness; /* with room around it */
+    float wide_steepness; /* with room around it, in the box that follows */
+    float wide_lo[3], wide_hi[3];
     HEWN_UINT count;
     HEWN_UINT levels;
     HEWN_UINT most_steps;

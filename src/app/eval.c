@@ -8,12 +8,14 @@
 #include "app/number_lines.h"
 #include "app/rows.h"
 #include "app/scene_arguments.h"
+#include "app/validation.h"
 #include "base/alloc.h"
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/json.h"
 #include "base/progress.h"
 #include "pipeline/domain.h"
+#include "pipeline/paths.h"
 
 enum { BATCH = 1 << 14, DEVICE_BATCH = 1 << 16, PIECE = 1 << 10, MOST_SIDE = 1 << 16 };
 
@@ -96,6 +98,9 @@ static hewn_result check_request(const eval_request *request, bool at, hewn_erro
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--inside, --bounds and --report go with --grid");
     if (request->report && strcmp(request->report, "-") == 0 && (!request->output || strcmp(request->output, "-") == 0))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the values and the report cannot both go to standard output");
+    if (request->report && request->output && strcmp(request->report, request->output) == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the values and the report cannot both go to %s",
+                         request->output);
     if (request->points && strcmp(request->points, "-") == 0 && strcmp(request->scene.desc.path, "-") == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the scene and the points cannot both come from standard input");
     return HEWN_OK;
@@ -140,9 +145,7 @@ typedef struct computing {
 static hewn_result begin_computing(const eval_request *request, const hewn_field *field, computing *out,
                                    hewn_error *error)
 {
-    const char *validation = getenv("HEWN_VALIDATION");
-    const hewn_device_desc desc = {.choice = request->device,
-                                   .validation = validation && validation[0] && strcmp(validation, "0") != 0};
+    const hewn_device_desc desc = {.choice = request->device, .validation = hewn_validation_wanted()};
     *out = (computing){.field = field};
     if (!request->device)
         return HEWN_OK;
@@ -463,7 +466,12 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
     hewn_scene *scene = NULL;
     hewn_result result = read_request(arguments, &request, &error);
     if (result == HEWN_OK)
-        result = hewn_scene_load(&request.scene.desc, &scene, &error);
+        result = hewn_output_check(request.output ? request.output : "-", &error);
+    if (result == HEWN_OK && request.report)
+        result = hewn_output_check(request.report, &error);
+    if (result == HEWN_OK)
+        result =
+            hewn_blame_input(hewn_scene_load(&request.scene.desc, &scene, &error), request.scene.desc.path, &error);
     if (result == HEWN_OK) {
         hewn_signals_catch();
         hewn_progress progress = hewn_progress_begin(request.quiet);

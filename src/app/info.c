@@ -9,6 +9,7 @@
 #include "app/volume_info.h"
 #include "base/error.h"
 #include "pipeline/json_parts.h"
+#include "pipeline/paths.h"
 
 static const hewn_option options[] = {
     {0, "json", NULL, "Print JSON."},
@@ -176,13 +177,9 @@ static hewn_result print_scene_json(const char *path, const hewn_scene *scene, c
 static hewn_result tell_scene(const hewn_scene_desc *desc, bool json, hewn_error *error)
 {
     hewn_scene *scene = NULL;
-    hewn_result result = hewn_scene_load(desc, &scene, error);
-    if (result == HEWN_IO) /* an input that cannot be read is a bad one */
-        result = error->code = HEWN_BAD_INPUT;
-    if (result != HEWN_OK)
-        return result;
+    HEWN_TRY(hewn_blame_input(hewn_scene_load(desc, &scene, error), desc->path, error));
     found_bounds bounds;
-    result = find_bounds(scene, &bounds, error);
+    hewn_result result = find_bounds(scene, &bounds, error);
     if (result == HEWN_OK && json)
         result = print_scene_json(desc->path, scene, &bounds, error);
     else if (result == HEWN_OK)

@@ -1,5 +1,4 @@
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -10,6 +9,7 @@
 #include "app/simplify_arguments.h"
 #include "app/smooth_arguments.h"
 #include "app/sweep.h"
+#include "app/validation.h"
 #include "base/alloc.h"
 #include "base/error.h"
 
@@ -146,9 +146,8 @@ static hewn_result read_device(const hewn_arguments *arguments, mesh_request *re
 {
     const char *threads = hewn_arguments_value(arguments, "threads");
     const char *memory = hewn_arguments_value(arguments, "max-memory");
-    const char *validation = getenv("HEWN_VALIDATION");
     request->desc.device = hewn_arguments_value(arguments, "device");
-    request->desc.validation = validation && validation[0] && strcmp(validation, "0") != 0;
+    request->desc.validation = hewn_validation_wanted();
     if (memory)
         HEWN_TRY(hewn_bytes_parse(memory, "--max-memory", &request->desc.max_memory, error));
     if (!threads)

@@ -43,9 +43,9 @@ hewn_result hewn_number_lines_open(const char *path, uint32_t width, const char 
     struct stat status;
     hewn_result result = HEWN_OK;
     if ((*out)->file < 0)
-        result = hewn_fail_at(error, HEWN_IO, path, 0, "cannot open: %s", strerror(errno));
+        result = hewn_fail_at(error, HEWN_BAD_INPUT, path, 0, "cannot open: %s", strerror(errno));
     else if (fstat((*out)->file, &status) == 0 && S_ISDIR(status.st_mode))
-        result = hewn_fail_at(error, HEWN_IO, path, 0, "it is a folder");
+        result = hewn_fail_at(error, HEWN_BAD_INPUT, path, 0, "it is a folder");
     if (result != HEWN_OK)
         hewn_number_lines_close(out);
     return result;
@@ -83,7 +83,7 @@ static hewn_result fill(hewn_number_lines *lines, bool *more, hewn_error *error)
         got = read(lines->file, lines->buffer, sizeof lines->buffer);
     while (got < 0 && errno == EINTR);
     if (got < 0)
-        return hewn_fail_at(error, HEWN_IO, lines->name, 0, "cannot read: %s", strerror(errno));
+        return hewn_fail_at(error, HEWN_BAD_INPUT, lines->name, 0, "cannot read: %s", strerror(errno));
     lines->used = 0;
     lines->filled = (size_t)got;
     *more = got > 0;
@@ -116,14 +116,13 @@ static hewn_result read_row(const hewn_number_lines *lines, double *row, uint32_
     static const char between[] = " \t\r,;";
     *count = 0;
     for (const char *at = lines->text + strspn(lines->text, between); *at && *at != '#'; at += strspn(at, between)) {
-        char word[64], *end;
+        char word[52], *end;
         size_t length = strcspn(at, " \t\r,;#");
-        snprintf(word, sizeof word, "%.*s", (int)(length < 48 ? length : 48), at);
-        if (length >= 48 || strspn(word, "0123456789+-.eE") != length)
+        double value = strtod(at, &end);
+        if (strspn(at, "0123456789+-.eE") != length || end != at + length || !isfinite(value)) {
+            snprintf(word, sizeof word, length < 48 ? "%.*s" : "%.*s...", (int)(length < 48 ? length : 48), at);
             return refuse(lines, "'%s' is not a finite number", word, error);
-        double value = strtod(word, &end);
-        if (*end || !isfinite(value))
-            return refuse(lines, "'%s' is not a finite number", word, error);
+        }
         if (*count < lines->width)
             row[*count] = value;
         ++*count;

@@ -1,6 +1,5 @@
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
@@ -9,6 +8,7 @@
 #include "app/number_lines.h"
 #include "app/rows.h"
 #include "app/scene_arguments.h"
+#include "app/validation.h"
 #include "base/alloc.h"
 #include "base/error.h"
 #include "pipeline/domain.h"
@@ -150,12 +150,10 @@ static hewn_result check_rows(const query_request *request, const hewn_number_li
     for (size_t i = 0; i < count; i++) {
         const double *row = rows + i * (request->rays ? 6 : 3);
         const double *d = row + 3;
-        if (fmax(fmax(fabs(row[0]), fabs(row[1])), fabs(row[2])) > 0x1p30)
+        if (fmax(fmax(fabs(row[0]), fabs(row[1])), fabs(row[2])) > HEWN_QUERY_FAR)
             return hewn_number_lines_refuse(lines, i, "a point is more than 2^30 away", error);
-        if (request->rays && !(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > 0))
+        if (request->rays && d[0] == 0 && d[1] == 0 && d[2] == 0)
             return hewn_number_lines_refuse(lines, i, "a ray has no direction", error);
-        if (request->rays && !isfinite(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]))
-            return hewn_number_lines_refuse(lines, i, "a direction is too long", error);
     }
     return HEWN_OK;
 }
@@ -201,9 +199,7 @@ static hewn_result ask_lines(const query_request *request, const hewn_scene *sce
     hewn_device *device = NULL;
     hewn_query *query = NULL;
     hewn_number_lines *lines = NULL;
-    const char *validation = getenv("HEWN_VALIDATION");
-    const hewn_device_desc desc = {.choice = request->device,
-                                   .validation = validation && validation[0] && strcmp(validation, "0") != 0};
+    const hewn_device_desc desc = {.choice = request->device, .validation = hewn_validation_wanted()};
     bool points = request->points != NULL;
     hewn_result result = hewn_number_lines_open(
         points ? request->points : request->rays, points ? 3 : 6,
@@ -251,7 +247,7 @@ static hewn_result ask_clearance(const query_request *request, const hewn_scene 
     const hewn_scene_desc desc = {.path = request->other, .allow_path = request->scene.desc.allow_path};
     hewn_scene *other;
     hewn_clearance found;
-    HEWN_TRY(hewn_scene_load(&desc, &other, error));
+    HEWN_TRY(hewn_blame_input(hewn_scene_load(&desc, &other, error), desc.path, error));
     hewn_result result = HEWN_OK;
     if (fabs(hewn_scene_metres_per_unit(other) / hewn_scene_metres_per_unit(scene) - 1) > 1e-9)
         result = hewn_fail_at(error, HEWN_BAD_INPUT, request->other, 0, "it is in another unit than the first scene");
@@ -277,7 +273,6 @@ static hewn_result ask_clearance(const query_request *request, const hewn_scene 
 
 static hewn_result answer(query_request *request, const hewn_scene *scene, hewn_error *error)
 {
-    HEWN_TRY(hewn_output_check(request->output ? request->output : "-", error));
     hewn_signals_catch();
     hewn_signals_end_at_once(true, NULL);
     hewn_progress progress = hewn_progress_begin(request->quiet);
@@ -295,7 +290,10 @@ static int run(const hewn_command *command, const hewn_arguments *arguments)
     hewn_scene *scene = NULL;
     hewn_result result = read_request(arguments, &request, &error);
     if (result == HEWN_OK)
-        result = hewn_scene_load(&request.scene.desc, &scene, &error);
+        result = hewn_output_check(request.output ? request.output : "-", &error);
+    if (result == HEWN_OK)
+        result =
+            hewn_blame_input(hewn_scene_load(&request.scene.desc, &scene, &error), request.scene.desc.path, &error);
     if (result == HEWN_OK)
         result = answer(&request, scene, &error);
     if (result == HEWN_BAD_INPUT && !error.file[0])

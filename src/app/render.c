@@ -1,5 +1,4 @@
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -8,6 +7,7 @@
 #include "app/number.h"
 #include "app/scene_arguments.h"
 #include "app/sweep.h"
+#include "app/validation.h"
 #include "base/alloc.h"
 #include "base/error.h"
 
@@ -138,11 +138,10 @@ static hewn_result read_part(const hewn_arguments *arguments, render_request *re
 
 static hewn_result read_input(const hewn_arguments *arguments, render_request *request, hewn_error *error)
 {
-    const char *validation = getenv("HEWN_VALIDATION");
     HEWN_TRY(hewn_scene_arguments_read_mesh_too(arguments, &request->scene, &request->desc.mesh, error));
     request->desc.scene = request->scene.desc;
     request->desc.device = hewn_arguments_value(arguments, "device");
-    request->desc.validation = validation && validation[0] && strcmp(validation, "0") != 0;
+    request->desc.validation = hewn_validation_wanted();
     request->quiet = hewn_arguments_has(arguments, "quiet");
     return HEWN_OK;
 }

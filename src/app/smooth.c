@@ -15,6 +15,8 @@ static const hewn_option options[] = {
     {0, "step", "LENGTH",
      "cotan, implicit: smooth as a Gaussian of this deviation in each step, in the input's unit. Default: the mean "
      "edge."},
+    {0, "remeasure", "N",
+     "cotan, implicit: measure weights and areas anew before each Nth step. Default: at the start only."},
     {0, "angle", "DEGREES", "bilateral: faces that bend by much more do not mix. Default: 20."},
     {0, "radius", "LENGTH",
      "bilateral: faces that are much further apart do not mix. Default: the mean distance of neighbours."},

@@ -64,6 +64,15 @@ static hewn_result read_share(const char *text, const char *option, const hewn_s
                                   : hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s is from 0 to 1, not %s", option, text);
 }
 
+static hewn_result read_remeasure(const char *text, const char *option, hewn_smooth_desc *desc, hewn_error *error)
+{
+    HEWN_TRY(hewn_count_parse(text, option, 1, &desc->remeasure, error));
+    if (desc->method != HEWN_SMOOTH_COTAN && desc->method != HEWN_SMOOTH_IMPLICIT)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s is for cotan and implicit, not for %s", option,
+                         hewn_smooth_method_name(desc->method));
+    return HEWN_OK;
+}
+
 /* One number by its name; `*known` tells whether there is one of that name. */
 static hewn_result read_named(const char *name, const char *text, const char *option, hewn_smooth_desc *desc,
                               bool *known, hewn_error *error)
@@ -71,6 +80,8 @@ static hewn_result read_named(const char *name, const char *text, const char *op
     *known = true;
     if (strcmp(name, "iterations") == 0)
         return hewn_count_parse(text, option, 1, &desc->iterations, error);
+    if (strcmp(name, "remeasure") == 0)
+        return read_remeasure(text, option, desc, error);
     if (strcmp(name, "original") == 0)
         return read_share(text, option, desc, &desc->original, error);
     if (strcmp(name, "push") == 0)
@@ -93,7 +104,7 @@ static hewn_result check_passband(const hewn_smooth_desc *desc, const char *opti
 
 static hewn_result read_parameters(const hewn_arguments *arguments, hewn_smooth_desc *desc, hewn_error *error)
 {
-    static const char *const names[] = {"iterations", "strength", "passband", "step",
+    static const char *const names[] = {"iterations", "strength", "passband", "step", "remeasure",
                                         "angle",      "radius",   "original", "push"};
     desc->push = 0.5;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {

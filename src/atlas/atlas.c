@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "atlas/charset.h"
 #include "atlas/colours.h"
 #include "atlas/glyph.h"
 #include "atlas/pack.h"
@@ -14,10 +15,11 @@
 enum { MOST_SIDE = 16384, GAP = 1, BLOCK = 64 };
 
 static const char *const names[] = {"msdf", "sdf", "psdf", "mtsdf"};
+enum { TYPES = sizeof names / sizeof *names };
 
 bool hewn_atlas_type_named(const char *name, hewn_atlas_type *out)
 {
-    for (unsigned i = 0; i < sizeof names / sizeof *names; i++)
+    for (unsigned i = 0; i < TYPES; i++)
         if (strcmp(name, names[i]) == 0) {
             *out = (hewn_atlas_type)i;
             return true;
@@ -27,7 +29,7 @@ bool hewn_atlas_type_named(const char *name, hewn_atlas_type *out)
 
 const char *hewn_atlas_type_name(hewn_atlas_type type)
 {
-    return names[type];
+    return (unsigned)type < TYPES ? names[type] : "unknown";
 }
 
 void hewn_atlas_destroy(hewn_atlas *atlas)
@@ -64,34 +66,37 @@ typedef struct making {
 /* --- characters ----------------------------------------------------------------------------------------------------
  */
 
-static int by_number(const void *left, const void *right)
-{
-    const uint32_t *p = left, *q = right;
-    return (*p > *q) - (*p < *q);
-}
-
 static hewn_result no_memory(hewn_error *error)
 {
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an atlas");
 }
 
+/* The characters without repeats, rising. */
+static hewn_result sort_characters(const hewn_atlas_desc *desc, uint32_t **out, size_t *count, hewn_error *error)
+{
+    hewn_charset set = {0};
+    hewn_result result = HEWN_OK;
+    *out = NULL;
+    for (size_t i = 0; i < desc->character_count && result == HEWN_OK; i++)
+        result = hewn_charset_add(&set, desc->characters[i], desc->characters[i], error);
+    if (result == HEWN_OK)
+        result = hewn_charset_list(&set, out, error);
+    *count = set.count;
+    hewn_charset_clear(&set);
+    return result;
+}
+
 static hewn_result find_glyphs(making *own, hewn_error *error)
 {
-    const hewn_atlas_desc *desc = own->desc;
     hewn_atlas *atlas = own->atlas;
-    size_t count = desc->character_count;
-    uint32_t *sorted = hewn_alloc(count, sizeof *sorted);
+    size_t count;
+    uint32_t *sorted;
+    HEWN_TRY(sort_characters(own->desc, &sorted, &count, error));
     atlas->glyphs = hewn_alloc_zero(count, sizeof *atlas->glyphs);
     atlas->missing = hewn_alloc(count, sizeof *atlas->missing);
     own->glyphs = hewn_alloc(count, sizeof *own->glyphs);
-    bool there = sorted && atlas->glyphs && atlas->missing && own->glyphs;
-    if (there) {
-        memcpy(sorted, desc->characters, count * sizeof *sorted);
-        qsort(sorted, count, sizeof *sorted, by_number);
-    }
+    bool there = atlas->glyphs && atlas->missing && own->glyphs;
     for (size_t i = 0; there && i < count; i++) {
-        if (i > 0 && sorted[i] == sorted[i - 1])
-            continue;
         uint32_t glyph = hewn_font_glyph(own->font, sorted[i]);
         if (glyph == 0) {
             atlas->missing[atlas->missing_count++] = sorted[i];
@@ -300,6 +305,12 @@ static hewn_result check(const hewn_font *font, const hewn_atlas_desc *desc, hew
 {
     if (!font || !desc || desc->character_count == 0 || !desc->characters)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "an atlas needs a font and characters");
+    for (size_t i = 0; i < desc->character_count; i++)
+        if (desc->characters[i] > HEWN_CHARACTER_MOST)
+            return hewn_fail(error, HEWN_INVALID_ARGUMENT, "character %zu, U+%X, is beyond U+10FFFF", i,
+                             desc->characters[i]);
+    if ((unsigned)desc->type >= TYPES)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "there is no type of atlas %u", (unsigned)desc->type);
     if (!(desc->size >= 0) || (desc->size > 0 && desc->size < 1) || desc->size > 4096)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the em is 1 to 4096 texels, not %g", desc->size);
     if (!(desc->range >= 0) || (desc->range > 0 && desc->range < 0.1) || desc->range > 1024)

@@ -4,26 +4,39 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "font/utf8.h"
+#include "base/utf8.h"
 
-enum { MOST = 0x10FFFF, MOST_ITEMS = 1 << 22 };
+enum { WORDS = (HEWN_CHARACTER_MOST + 1) / 32 };
 
 void hewn_charset_clear(hewn_charset *set)
 {
-    hewn_free(set->items);
+    hewn_free(set->bits);
     *set = (hewn_charset){0};
 }
 
-static hewn_result add_range(hewn_charset *set, uint32_t first, uint32_t last, hewn_error *error)
+hewn_result hewn_charset_add(hewn_charset *set, uint32_t first, uint32_t last, hewn_error *error)
 {
-    size_t count = (size_t)last - first + 1;
-    if (count > MOST_ITEMS - set->count)
-        return hewn_fail(error, HEWN_LIMIT, "more than %d characters", MOST_ITEMS);
-    void *items = set->items;
-    HEWN_TRY(hewn_reserve(&items, &set->room, set->count + count, sizeof *set->items, error));
-    set->items = items;
-    for (uint32_t at = first; at <= last; at++)
-        set->items[set->count++] = at;
+    if (!set->bits)
+        set->bits = hewn_alloc_zero(WORDS, sizeof *set->bits);
+    if (!set->bits)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a set of characters");
+    for (uint32_t at = first; at <= last; at++) {
+        uint32_t bit = 1u << at % 32;
+        set->count += (set->bits[at / 32] & bit) == 0;
+        set->bits[at / 32] |= bit;
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_charset_list(const hewn_charset *set, uint32_t **out, hewn_error *error)
+{
+    *out = hewn_alloc(set->count > 0 ? set->count : 1, sizeof **out);
+    if (!*out)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a set of characters");
+    size_t count = 0;
+    for (uint32_t at = 0; set->bits && at <= HEWN_CHARACTER_MOST; at++)
+        if (set->bits[at / 32] >> at % 32 & 1)
+            (*out)[count++] = at;
     return HEWN_OK;
 }
 
@@ -34,7 +47,8 @@ static hewn_result add_all(hewn_charset *set, const hewn_font *font, hewn_error 
     HEWN_TRY(hewn_font_characters(font, &items, &count, error));
     hewn_result result = HEWN_OK;
     for (size_t i = 0; i < count && result == HEWN_OK; i++)
-        result = add_range(set, items[i], items[i], error);
+        if (items[i] <= HEWN_CHARACTER_MOST) /* a font's table may name anything */
+            result = hewn_charset_add(set, items[i], items[i], error);
     hewn_free(items);
     return result;
 }
@@ -47,20 +61,20 @@ hewn_result hewn_charset_add_named(hewn_charset *set, const char *name, const he
         return add_all(set, font, error);
     *known = strcmp(name, "ascii") == 0 || strcmp(name, "latin1") == 0;
     if (*known)
-        HEWN_TRY(add_range(set, 0x20, 0x7E, error));
-    return strcmp(name, "latin1") == 0 ? add_range(set, 0xA0, 0xFF, error) : HEWN_OK;
+        HEWN_TRY(hewn_charset_add(set, 0x20, 0x7E, error));
+    return strcmp(name, "latin1") == 0 ? hewn_charset_add(set, 0xA0, 0xFF, error) : HEWN_OK;
 }
 
 hewn_result hewn_charset_add_text(hewn_charset *set, const char *text, hewn_error *error)
 {
     for (const char *at = text; *at;) {
         uint32_t value;
-        size_t length = hewn_utf8_next(at, &value);
+        size_t length = hewn_utf8_next(at, SIZE_MAX, &value);
         if (length == 0)
             return hewn_fail(error, HEWN_BAD_INPUT, "byte %zu is not UTF-8", (size_t)(at - text) + 1);
         bool mark = value == 0xFEFF && at == text; /* of the byte order, as some editors write it */
         if (value >= 0x20 && value != 0x7F && !mark)
-            HEWN_TRY(add_range(set, value, value, error));
+            HEWN_TRY(hewn_charset_add(set, value, value, error));
         at += length;
     }
     return HEWN_OK;
@@ -105,7 +119,7 @@ static hewn_result read_number(reader *own, uint32_t *out)
         return fail(own, "a number has no digits");
     for (int digit; (digit = digit_of(*own->at, base)) >= 0; own->at++) {
         value = value * (uint32_t)base + (uint32_t)digit;
-        if (value > MOST)
+        if (value > HEWN_CHARACTER_MOST)
             return fail(own, "a character is at most 0x10FFFF");
     }
     *out = value;
@@ -127,7 +141,7 @@ static hewn_result read_quoted(reader *own, char quote, uint32_t *out, bool *end
         if (*own->at != '\\' && *own->at != '"' && *own->at != '\'')
             return fail(own, "after \\ there is another \\ or a quote");
     }
-    size_t length = hewn_utf8_next(own->at, out);
+    size_t length = hewn_utf8_next(own->at, SIZE_MAX, out);
     if (length == 0)
         return fail(own, "a byte that is not UTF-8");
     own->at += length;
@@ -164,7 +178,7 @@ static hewn_result read_range(reader *own, hewn_charset *set)
     own->at++;
     if (first > last)
         return fail(own, "a range runs from the lower character to the higher");
-    return add_range(set, first, last, own->error);
+    return hewn_charset_add(set, first, last, own->error);
 }
 
 static hewn_result read_string(reader *own, hewn_charset *set)
@@ -175,7 +189,7 @@ static hewn_result read_string(reader *own, hewn_charset *set)
         HEWN_TRY(read_quoted(own, '"', &value, &end));
         if (end)
             return HEWN_OK;
-        HEWN_TRY(add_range(set, value, value, own->error));
+        HEWN_TRY(hewn_charset_add(set, value, value, own->error));
     }
 }
 
@@ -192,7 +206,7 @@ hewn_result hewn_charset_add_description(hewn_charset *set, const char *text, he
         } else {
             uint32_t value = 0;
             HEWN_TRY(read_character(&own, &value));
-            HEWN_TRY(add_range(set, value, value, error));
+            HEWN_TRY(hewn_charset_add(set, value, value, error));
         }
     }
     return HEWN_OK;

@@ -29,8 +29,8 @@ typedef struct hewn_drawn {
 uint8_t hewn_texel_of(double distance, double range);
 
 /* Where the middle one of three distances, interpolated between four texels, is on the wrong side of the outline by
- * more than plain distances would be, the four texels get the plain one for all three. Returns how many did.
- * HEWN_OUT_OF_MEMORY. */
+ * more than plain distances would be, the four texels get the plain one for all three; `*count` receives how
+ * many did. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_drawn_soften(const hewn_shape *shape, hewn_drawn *drawn, size_t *count, hewn_error *error);
 
 #endif

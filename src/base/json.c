@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
+
 hewn_json hewn_json_begin(hewn_text *text)
 {
     return (hewn_json){.text = text, .depth = 0, .first = true};
@@ -19,38 +21,13 @@ static void break_line(hewn_json *json)
         hewn_text_append(json->text, "  ");
 }
 
-/* How many bytes the well-formed UTF-8 sequence at `at` has; 0 where there is none. Overlong forms, surrogates and
- * values past U+10FFFF are not well formed (Unicode 15, table 3-7). */
-static size_t sequence_length(const unsigned char *at)
-{
-    if (at[0] < 0x80)
-        return 1;
-    size_t length = at[0] >= 0xf0 ? 4 : at[0] >= 0xe0 ? 3 : 2;
-    if (at[0] < 0xc2 || at[0] > 0xf4)
-        return 0;
-    unsigned char lo = 0x80, hi = 0xbf;
-    if (at[0] == 0xe0)
-        lo = 0xa0;
-    else if (at[0] == 0xed)
-        hi = 0x9f;
-    else if (at[0] == 0xf0)
-        lo = 0x90;
-    else if (at[0] == 0xf4)
-        hi = 0x8f;
-    if (at[1] < lo || at[1] > hi)
-        return 0;
-    for (size_t i = 2; i < length; i++)
-        if (at[i] < 0x80 || at[i] > 0xbf) /* the final NUL ends here too */
-            return 0;
-    return length;
-}
-
 static void quote(hewn_text *text, const char *string)
 {
     const unsigned char *at = (const unsigned char *)string;
     hewn_text_append(text, "\"");
     while (*at) {
-        size_t length = sequence_length(at);
+        uint32_t value;
+        size_t length = hewn_utf8_next((const char *)at, SIZE_MAX, &value);
         if (length == 0) {
             hewn_text_append(text, "\xef\xbf\xbd");
             at++;

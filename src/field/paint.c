@@ -8,6 +8,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/srgb.h"
 #include "field/internal.h"
 #include "field/interval.h"
 
@@ -45,11 +46,6 @@ static const double unpainted[3] = {0.62, 0.64, 0.67}; /* as pictures show shape
 /* --- building ------------------------------------------------------------------------------------------------------
  */
 
-static double linear(double srgb)
-{
-    return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
-}
-
 static hewn_node paint(hewn_field *f, hewn_node shape, const double parameter[4])
 {
     hewn_node_data data = {.op = HEWN_OP_PAINT, .operand = {shape.id, HEWN_NO_ID, HEWN_NO_ID}};
@@ -65,7 +61,7 @@ hewn_node hewn_color(hewn_field *f, hewn_node shape, double red, double green, d
         if (!(given[i] >= 0) || !(given[i] <= 1))
             return hewn_field_refuse(f, HEWN_INVALID_ARGUMENT, "color: red, green and blue lie between 0 and 1, not %g",
                                      given[i]);
-        parameter[i] = linear(given[i]);
+        parameter[i] = hewn_srgb_to_linear(given[i]);
     }
     return paint(f, shape, parameter);
 }

@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "font/bezier.h"
 
 static bool is_near(hewn_grid_point p)
 {
@@ -48,16 +49,14 @@ static unsigned chord_count(unsigned degree, const double (*p)[2], double off)
 hewn_result hewn_grid_add_curve(hewn_grid_sides *sides, unsigned degree, const double (*points)[2], double off,
                                 hewn_error *error)
 {
+    hewn_bezier curve = {.degree = degree};
+    memcpy(curve.p, points, (degree + 1) * sizeof *curve.p);
     unsigned chords = chord_count(degree, points, off);
     hewn_grid_point last = rounded(points[0]);
     for (unsigned i = 1; i <= chords; i++) {
-        double level[4][2], t = (double)i / chords; /* de Casteljau */
-        memcpy(level, points, (degree + 1) * sizeof *level);
-        for (unsigned round = degree; round > 0; round--)
-            for (unsigned k = 0; k < round; k++)
-                for (int axis = 0; axis < 2; axis++)
-                    level[k][axis] += t * (level[k + 1][axis] - level[k][axis]);
-        hewn_grid_point next = rounded(i == chords ? points[degree] : level[0]);
+        double p[2];
+        hewn_bezier_point(&curve, (double)i / chords, p);
+        hewn_grid_point next = rounded(i == chords ? points[degree] : p);
         HEWN_TRY(hewn_grid_add(sides, last, next, error));
         sides->tag++;
         last = next;

@@ -5,9 +5,9 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/utf8.h"
 #include "field/internal.h"
 #include "font/font.h"
-#include "font/utf8.h"
 
 /* Work grows with the square of a group's sides. */
 enum { TEXT_LIMIT = 10000, GROUP_SIDES = 8192, ALL_SIDES = 1 << 18 };
@@ -37,7 +37,7 @@ static hewn_result check_text(const char *text, hewn_error *error)
     size_t count = 0;
     for (const char *at = text; *at; count++) {
         uint32_t value;
-        size_t length = hewn_utf8_next(at, &value);
+        size_t length = hewn_utf8_next(at, SIZE_MAX, &value);
         if (length == 0)
             return hewn_fail(error, HEWN_BAD_INPUT, "byte %zu of the text is not UTF-8", (size_t)(at - text) + 1);
         if (value < 0x20 && value != '\n' && value != '\t' && value != '\r')
@@ -56,7 +56,7 @@ static hewn_result check_text(const char *text, hewn_error *error)
 static hewn_result missing(const char *line, uint32_t cluster, hewn_error *error)
 {
     uint32_t value = 0;
-    size_t length = hewn_utf8_next(line + cluster, &value);
+    size_t length = hewn_utf8_next(line + cluster, SIZE_MAX, &value);
     return hewn_fail(error, HEWN_BAD_INPUT, "the font has no glyph for '%.*s' (U+%04X)", (int)length, line + cluster,
                      value);
 }

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/progress.h"
+#include "base/srgb.h"
 #include "io/bytes.h"
 #include "io/formats.h"
 
@@ -69,8 +70,7 @@ static hewn_result check(const file *of, hewn_error *error)
 /* glTF's colours are linear. */
 static double linear(uint8_t value)
 {
-    double share = value / 255.0;
-    return share <= 0.04045 ? share / 12.92 : pow((share + 0.055) / 1.055, 2.4);
+    return hewn_srgb_to_linear(value / 255.0);
 }
 
 static void print_nodes(const file *of, hewn_json *json)

@@ -7,6 +7,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/srgb.h"
 #include "hewn/picture.h"
 #include "io/png_write.h"
 
@@ -35,12 +36,9 @@ static void be_silent(png_structp png, png_const_charp text)
     (void)text;
 }
 
-/* IEC 61966-2-1 */
 static uint8_t srgb(float linear)
 {
-    double value = linear > 0 ? fmin((double)linear, 1) : 0;
-    value = value <= 0.0031308 ? 12.92 * value : 1.055 * pow(value, 1 / 2.4) - 0.055;
-    return (uint8_t)(255 * value + 0.5);
+    return (uint8_t)(255 * hewn_srgb_from_linear(linear > 0 ? fmin((double)linear, 1) : 0) + 0.5);
 }
 
 static uint8_t unit_byte(float value)

@@ -61,14 +61,6 @@ static void count_bits(uint64_t bits, uint32_t axis, hewn_lattice_row *rows)
         rows[hewn_lattice_lowest(bits) / HEWN_BLOCK].vertices[axis]++;
 }
 
-static uint64_t ones(uint64_t bits)
-{
-    uint64_t count = 0;
-    for (; bits; bits &= bits - 1)
-        count++;
-    return count;
-}
-
 uint64_t hewn_block_rim_edges(const hewn_lattice *lattice, uint64_t block, uint32_t axis, uint32_t z)
 {
     uint64_t bits = 0;
@@ -79,7 +71,7 @@ uint64_t hewn_block_rim_edges(const hewn_lattice *lattice, uint64_t block, uint3
     for (uint32_t n = 0; n < HEWN_BLOCK; n++) {
         const uint32_t at = start[axis] + n;
         if (at == 0 || at + 2 == lattice->dims[axis])
-            bits |= axis == 0 ? (uint64_t)0x0101010101010101u << n : (uint64_t)0xFF << HEWN_BLOCK * n;
+            bits |= axis == 0 ? HEWN_BLOCK_COLUMN << n : (uint64_t)0xFF << HEWN_BLOCK * n;
     }
     return bits;
 }
@@ -117,7 +109,7 @@ static block_counts count_block(const hewn_lattice *lattice, uint64_t number)
             const uint64_t crossed = hewn_block_crossed(&signs, axis, z);
             count_bits(crossed, axis, row);
             if (lattice->rim && !lattice->repeats && crossed && z < own[1])
-                counts.caps += ones(crossed & hewn_block_rim_edges(lattice, number, axis, z));
+                counts.caps += hewn_lattice_ones(crossed & hewn_block_rim_edges(lattice, number, axis, z));
         }
         if (z < own[1])
             count_cells(lattice, &signs, start, z, row, &counts);
@@ -148,15 +140,6 @@ static void sum_row(hewn_lattice_blocks *own, uint64_t first, uint64_t end, uint
     }
 }
 
-static uint64_t end_of_bar(const hewn_lattice_blocks *own, uint64_t first, uint64_t end)
-{
-    const uint32_t *place = own->surface[first].place;
-    uint64_t at = first + 1;
-    while (at < end && own->surface[at].place[1] == place[1])
-        at++;
-    return at;
-}
-
 /* Where the sums of a slab are noted, slice by slice. */
 typedef struct slice_notes {
     hewn_lattice *lattice;
@@ -184,7 +167,7 @@ static void sum_layer(slice_notes *notes, uint64_t first, uint64_t end, hewn_lat
     for (uint32_t z = rows[0]; z < rows[1]; z++) {
         note_slices(notes, start[2] + z, sums);
         for (uint64_t bar = first, next; bar < end; bar = next) {
-            next = end_of_bar(own, bar, end);
+            next = hewn_block_bar_end(own, bar, end);
             for (uint32_t y = 0; y < HEWN_BLOCK; y++)
                 sum_row(own, bar, next, y, z, sums);
         }
@@ -197,8 +180,7 @@ static void sum_up(hewn_lattice *lattice)
     hewn_lattice_sums sums = lattice->before;
     slice_notes notes = {.lattice = lattice, .next = lattice->begin};
     for (uint64_t first = own->first, end; first < own->end; first = end) {
-        for (end = first + 1; end < own->end && own->surface[end].place[2] == own->surface[first].place[2];)
-            end++;
+        end = hewn_block_layer_end(own, first, own->end);
         sum_layer(&notes, first, end, &sums);
     }
     note_slices(&notes, lattice->end, &sums);

@@ -4,12 +4,21 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/order.h"
+#include "base/progress.h"
 #include "iso/lattice_blocks.h"
 
 /* More blocks than this have more vertices than indices can name, or rows than memory can hold. */
 enum { MOST_BLOCKS = 1 << 26 };
 
-static const uint64_t COLUMN = 0x0101010101010101u; /* bit 0 of each row of a slice */
+/* Cubes that are searched between two looks at progress, and at what was found. */
+enum { MANY_CUBES = 1024, MANY_ROOTS = 1 << 16 };
+
+/* Bytes that a block of the surface takes while these are being found: its key in a list that doubles, once more where
+ * it is sorted, and its place. */
+enum { BLOCK_BYTES = 3 * sizeof(uint64_t) + sizeof(hewn_lattice_block) };
+
+static const uint64_t COLUMN = HEWN_BLOCK_COLUMN;
 
 /* --- signs -------------------------------------------------------------------------------------------------------- */
 
@@ -172,14 +181,19 @@ typedef struct block_list {
     uint64_t *keys;
     uint64_t count;
     size_t room;
-    bool failed;
+    hewn_result result;
 } block_list;
 
 typedef struct block_search {
     const hewn_lattice *lattice;
+    const hewn_volume_extract_desc *desc;
     uint64_t along, across; /* keys of neighbours along j and k differ by these */
-    uint32_t (*cubes)[3];   /* of 128, that may have surface */
+    uint32_t (*cubes)[3];   /* of 128, that may have surface and have not been searched */
     size_t cube_count, cube_room;
+    uint64_t bytes; /* in use beside cubes and blocks */
+    uint64_t most;  /* blocks that may be found */
+    uint64_t found; /* so many were, by all threads */
+    block_list all;
 } block_search;
 
 static uint32_t state_of_block(const hewn_block_bits bits)
@@ -233,11 +247,10 @@ static void add_block(const block_search *search, const uint32_t place[3], block
     for (uint32_t z = 0; z < HEWN_BLOCK; z++)
         any |= hewn_block_crossed(&signs, 0, z) | hewn_block_crossed(&signs, 1, z) | hewn_block_crossed(&signs, 2, z) |
                hewn_block_active(&signs, z);
-    if (!any || out->failed)
+    if (!any || out->result != HEWN_OK)
         return;
-    out->failed = out->count > MOST_BLOCKS ||
-                  hewn_reserve((void **)&out->keys, &out->room, out->count + 1, sizeof *out->keys, NULL) != HEWN_OK;
-    if (!out->failed)
+    out->result = hewn_reserve((void **)&out->keys, &out->room, out->count + 1, sizeof *out->keys, NULL);
+    if (out->result == HEWN_OK)
         out->keys[out->count++] = place[0] + search->along * place[1] + search->across * place[2];
 }
 
@@ -250,11 +263,16 @@ static void next_part(uint32_t state, uint32_t parts, uint32_t *part)
         *part += parts - 1 - x;
 }
 
-static void search_cube(const block_search *search, const uint32_t cube[3], block_list *out)
+/* Once too many are found, by whichever thread, nobody goes on. */
+static void search_cube(block_search *search, const uint32_t cube[3], block_list *out)
 {
-    uint32_t state, own;
-    (void)may_have_surface(search->lattice, HEWN_LOWER_SPAN, cube, &state);
-    for (uint32_t part = 0; part < HEWN_LOWER_ENTRIES; part++) {
+    const uint32_t state = state_of(search->lattice, HEWN_LOWER_SPAN, cube);
+    const uint64_t before = out->count;
+    uint64_t found;
+    uint32_t own;
+#pragma omp atomic read
+    found = search->found;
+    for (uint32_t part = 0; part < HEWN_LOWER_ENTRIES && found <= search->most && out->result == HEWN_OK; part++) {
         next_part(state, HEWN_LOWER, &part);
         const uint32_t at[3] = {HEWN_LOWER * cube[0] + part % HEWN_LOWER,
                                 HEWN_LOWER * cube[1] + part / HEWN_LOWER % HEWN_LOWER,
@@ -262,69 +280,118 @@ static void search_cube(const block_search *search, const uint32_t cube[3], bloc
         if (may_have_surface(search->lattice, HEWN_BLOCK, at, &own))
             add_block(search, at, out);
     }
+#pragma omp atomic
+    search->found += out->count - before;
 }
 
-static hewn_result list_cubes(block_search *search, hewn_error *error)
+/* Adds those in a cube of 4096 to the cubes of 128 to be searched. */
+static hewn_result list_cubes(block_search *search, uint64_t root, hewn_error *error)
 {
     const uint32_t *roots = search->lattice->volume->blocks->roots;
-    for (uint64_t root = 0; root < (uint64_t)roots[0] * roots[1] * roots[2]; root++) {
-        const uint32_t whole[3] = {(uint32_t)(root % roots[0]), (uint32_t)(root / roots[0] % roots[1]),
-                                   (uint32_t)(root / roots[0] / roots[1])};
-        uint32_t state, own;
-        if (!may_have_surface(search->lattice, HEWN_UPPER_SPAN, whole, &state))
+    const uint32_t whole[3] = {(uint32_t)(root % roots[0]), (uint32_t)(root / roots[0] % roots[1]),
+                               (uint32_t)(root / roots[0] / roots[1])};
+    uint32_t state, own;
+    if (!may_have_surface(search->lattice, HEWN_UPPER_SPAN, whole, &state))
+        return HEWN_OK;
+    for (uint32_t part = 0; part < HEWN_UPPER_ENTRIES; part++) {
+        next_part(state, HEWN_UPPER, &part);
+        const uint32_t at[3] = {HEWN_UPPER * whole[0] + part % HEWN_UPPER,
+                                HEWN_UPPER * whole[1] + part / HEWN_UPPER % HEWN_UPPER,
+                                HEWN_UPPER * whole[2] + part / HEWN_UPPER / HEWN_UPPER};
+        if (!may_have_surface(search->lattice, HEWN_LOWER_SPAN, at, &own))
             continue;
-        for (uint32_t part = 0; part < HEWN_UPPER_ENTRIES; part++) {
-            next_part(state, HEWN_UPPER, &part);
-            const uint32_t at[3] = {HEWN_UPPER * whole[0] + part % HEWN_UPPER,
-                                    HEWN_UPPER * whole[1] + part / HEWN_UPPER % HEWN_UPPER,
-                                    HEWN_UPPER * whole[2] + part / HEWN_UPPER / HEWN_UPPER};
-            if (!may_have_surface(search->lattice, HEWN_LOWER_SPAN, at, &own))
-                continue;
-            HEWN_TRY(hewn_reserve((void **)&search->cubes, &search->cube_room, search->cube_count + 1,
-                                  sizeof *search->cubes, error));
-            memcpy(search->cubes[search->cube_count++], at, sizeof at);
-        }
+        HEWN_TRY(hewn_reserve((void **)&search->cubes, &search->cube_room, search->cube_count + 1,
+                              sizeof *search->cubes, error));
+        memcpy(search->cubes[search->cube_count++], at, sizeof at);
     }
+    return HEWN_OK;
+}
+
+/* --- limits ------------------------------------------------------------------------------------------------------- */
+
+/* Bytes in use with so many blocks found. */
+static uint64_t bytes_with(const block_search *search, uint64_t blocks)
+{
+    return search->bytes + search->cube_room * sizeof *search->cubes + BLOCK_BYTES * blocks;
+}
+
+static void set_limit(block_search *search)
+{
+    const uint64_t allowed = search->desc->max_memory, without = bytes_with(search, 0);
+    search->most = MOST_BLOCKS;
+    if (allowed > 0 && (allowed < without || (allowed - without) / BLOCK_BYTES < MOST_BLOCKS))
+        search->most = allowed < without ? 0 : (allowed - without) / BLOCK_BYTES;
+}
+
+static hewn_result check_limit(const block_search *search, hewn_error *error)
+{
+    const uint64_t allowed = search->desc->max_memory, bytes = bytes_with(search, search->found);
+    if (allowed > 0 && bytes > allowed)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY,
+                         "the blocks that the surface passes need %llu bytes or more, of the %llu that are allowed",
+                         (unsigned long long)bytes, (unsigned long long)allowed);
+    if (search->found > MOST_BLOCKS)
+        return hewn_fail(error, HEWN_LIMIT, "the surface passes more than %d blocks of 8 x 8 x 8 samples", MOST_BLOCKS);
     return HEWN_OK;
 }
 
 /* --- their order -------------------------------------------------------------------------------------------------- */
 
-static int by_key(const void *a, const void *b)
+static hewn_result join(block_list *all, const block_list *own)
 {
-    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
-}
-
-static hewn_result join(block_list *all, block_list *own, hewn_error *error)
-{
-    if (own->failed || all->count + own->count > MOST_BLOCKS)
-        return hewn_fail(error, HEWN_LIMIT,
-                         "the surface passes more than %d blocks of 8 x 8 x 8 samples, or memory is short",
-                         MOST_BLOCKS);
-    HEWN_TRY(hewn_reserve((void **)&all->keys, &all->room, all->count + own->count, sizeof *all->keys, error));
+    if (own->result != HEWN_OK || own->count == 0)
+        return own->result;
+    const hewn_result result =
+        hewn_reserve((void **)&all->keys, &all->room, all->count + own->count, sizeof *all->keys, NULL);
+    if (result != HEWN_OK)
+        return result;
     memcpy(all->keys + all->count, own->keys, own->count * sizeof *own->keys);
     all->count += own->count;
     return HEWN_OK;
 }
 
-static hewn_result search_all(const block_search *search, block_list *out, hewn_error *error)
+/* Cubes [begin, end) of those that are listed. */
+static hewn_result search_cubes(block_search *search, size_t begin, size_t end, hewn_error *error)
 {
-    hewn_result result = HEWN_OK;
-#pragma omp parallel if (search->cube_count > 1)
+    block_list *all = &search->all;
+    set_limit(search);
+#pragma omp parallel if (end - begin > 1)
     {
         block_list own = {0};
 #pragma omp for schedule(dynamic)
-        for (uint64_t n = 0; n < search->cube_count; n++)
+        for (size_t n = begin; n < end; n++)
             search_cube(search, search->cubes[n], &own);
 #pragma omp critical(hewn_lattice_blocks)
-        if (result == HEWN_OK && (own.count > 0 || own.failed))
-            result = join(out, &own, error);
+        if (all->result == HEWN_OK)
+            all->result = join(all, &own);
         hewn_free(own.keys);
     }
-    if (out->count > 1)
-        qsort(out->keys, out->count, sizeof *out->keys, by_key);
-    return result;
+    HEWN_TRY(check_limit(search, error));
+    if (all->result != HEWN_OK)
+        return hewn_fail(error, all->result, "out of memory for the blocks of a surface");
+    return hewn_progress_report(search->desc->progress, "extract", 0, error);
+}
+
+/* Cubes are searched when there are many, so they take little memory however large the volume is. */
+static hewn_result search_all(block_search *search, hewn_error *error)
+{
+    const uint32_t *roots = search->lattice->volume->blocks->roots;
+    const uint64_t count = (uint64_t)roots[0] * roots[1] * roots[2];
+    for (uint64_t root = 0; root < count; root++) {
+        HEWN_TRY(list_cubes(search, root, error));
+        if (root % MANY_ROOTS == MANY_ROOTS - 1)
+            HEWN_TRY(hewn_progress_report(search->desc->progress, "extract", 0, error));
+        if (search->cube_count < MANY_CUBES && root + 1 < count)
+            continue;
+        for (size_t begin = 0, end; begin < search->cube_count; begin = end) {
+            end = search->cube_count - begin > MANY_CUBES ? begin + MANY_CUBES : search->cube_count;
+            HEWN_TRY(search_cubes(search, begin, end, error));
+        }
+        search->cube_count = 0;
+    }
+    if (search->all.count > 1)
+        qsort(search->all.keys, search->all.count, sizeof *search->all.keys, hewn_order_uint64);
+    return HEWN_OK;
 }
 
 /* Keys that are looked for rise as those of the blocks do. */
@@ -352,26 +419,26 @@ static hewn_result set_surface(const block_search *search, const block_list *fou
     return HEWN_OK;
 }
 
-static hewn_result find_surface(const hewn_lattice *lattice, hewn_lattice_blocks *out, hewn_error *error)
+static hewn_result find_surface(const hewn_lattice *lattice, const hewn_volume_extract_desc *desc,
+                                hewn_lattice_blocks *out, hewn_error *error)
 {
     const uint32_t *roots = lattice->volume->blocks->roots;
     const uint64_t side = HEWN_UPPER_SPAN / HEWN_BLOCK;
-    block_search search = {.lattice = lattice, .along = side * roots[0] + 1};
-    block_list found = {0};
+    block_search search = {.lattice = lattice, .desc = desc, .along = side * roots[0] + 1};
     search.across = search.along * (side * roots[1] + 1);
-    hewn_result result = list_cubes(&search, error);
+    search.bytes = lattice->volume->memory_length + hewn_lattice_blocks_bytes(lattice);
+    hewn_result result = search_all(&search, error);
+    out->peak = bytes_with(&search, search.found);
     if (result == HEWN_OK)
-        result = search_all(&search, &found, error);
-    if (result == HEWN_OK)
-        result = set_surface(&search, &found, out, error);
+        result = set_surface(&search, &search.all, out, error);
     hewn_free(search.cubes);
-    hewn_free(found.keys);
+    hewn_free(search.all.keys);
     return result;
 }
 
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
-hewn_result hewn_lattice_blocks_create(hewn_lattice *lattice, hewn_error *error)
+hewn_result hewn_lattice_blocks_create(hewn_lattice *lattice, const hewn_volume_extract_desc *desc, hewn_error *error)
 {
     const hewn_blocks *blocks = lattice->volume->blocks;
     hewn_lattice_blocks *own = hewn_alloc_zero(1, sizeof *own);
@@ -384,7 +451,7 @@ hewn_result hewn_lattice_blocks_create(hewn_lattice *lattice, hewn_error *error)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the signs of %llu blocks",
                          (unsigned long long)blocks->block_count);
     find_signs(lattice, own);
-    return find_surface(lattice, own, error);
+    return find_surface(lattice, desc, own, error);
 }
 
 void hewn_lattice_blocks_destroy(hewn_lattice *lattice)

@@ -10,6 +10,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/order.h"
 #include "iso/lattice_blocks.h"
 
 #define NONE 0xFFFFFFFFu
@@ -134,21 +135,13 @@ static void walk_blocks(bodies *found)
 {
     const hewn_lattice_blocks *blocks = found->lattice->blocks;
     for (uint64_t layer = 0, end; layer < blocks->count; layer = end) {
-        for (end = layer; end < blocks->count && blocks->surface[end].place[2] == blocks->surface[layer].place[2];)
-            end++;
+        end = hewn_block_layer_end(blocks, layer, blocks->count);
         for (uint32_t z = 0; z < HEWN_BLOCK; z++)
             for (uint64_t bar = layer, next; bar < end; bar = next) {
-                for (next = bar; next < end && blocks->surface[next].place[1] == blocks->surface[bar].place[1];)
-                    next++;
+                next = hewn_block_bar_end(blocks, bar, end);
                 walk_bar(found, bar, next, z);
             }
     }
-}
-
-static int by_leftmost(const void *a, const void *b)
-{
-    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
 }
 
 static hewn_result sort_by_leftmost(bodies *found, hewn_error *error)
@@ -158,7 +151,7 @@ static hewn_result sort_by_leftmost(bodies *found, hewn_error *error)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %u shells of a mesh", found->count);
     for (uint32_t s = 0; s < found->count; s++)
         keys[s] = (uint64_t)found->shells[s].leftmost << 32 | s;
-    qsort(keys, found->count, sizeof *keys, by_leftmost);
+    qsort(keys, found->count, sizeof *keys, hewn_order_uint64);
     for (uint32_t s = 0; s < found->count; s++)
         found->order[s] = (uint32_t)keys[s];
     hewn_free(keys);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "base/order.h"
 #include "base/progress.h"
 #include "iso/cluster_passes.h"
 
@@ -77,12 +78,6 @@ static uint32_t root_of(uint32_t *parent, uint32_t cluster)
     return cluster;
 }
 
-static int compare(const void *a, const void *b)
-{
-    uint64_t p = *(const uint64_t *)a, q = *(const uint64_t *)b;
-    return p < q ? -1 : p > q;
-}
-
 /* The clusters of a node, those that are connected within it together. */
 static bool find_connected(octree *tree, worker *own, node here)
 {
@@ -108,7 +103,7 @@ static bool find_connected(octree *tree, worker *own, node here)
         }
     for (size_t i = 0; i < count; i++)
         own->members[i] = (uint64_t)root_of(tree->parent, list[i]) << 32 | list[i];
-    qsort(own->members, count, sizeof *own->members, compare);
+    qsort(own->members, count, sizeof *own->members, hewn_order_uint64);
     return true;
 }
 

@@ -132,6 +132,15 @@ static inline uint32_t hewn_lattice_lowest(uint64_t bits)
     return (uint32_t)__builtin_ctzll(bits);
 }
 
+/* How many bits are set: quick where few are. */
+static inline uint32_t hewn_lattice_ones(uint64_t bits)
+{
+    uint32_t count = 0;
+    for (; bits; bits &= bits - 1)
+        count++;
+    return count;
+}
+
 /* The four rows of samples around a row of cells. Word number `words` of a row is the first of the next one, so what it
  * adds at the row's end must be masked. */
 typedef struct hewn_lattice_cells {

@@ -14,6 +14,9 @@
 /* Rows of samples (or cells) of a block: number j + 8 k. */
 enum { HEWN_BLOCK_ROWS = HEWN_BLOCK * HEWN_BLOCK };
 
+/* The first place of each row of a slice. */
+#define HEWN_BLOCK_COLUMN ((uint64_t)0x0101010101010101u)
+
 /* A block of the surface. `ahead`: the first one that lies no less far along i in the bars at (j + 1, k), (j, k + 1)
  * and (j + 1, k + 1). If it is not in that bar at all, there is nothing to be named in it. */
 typedef struct hewn_lattice_block {
@@ -28,6 +31,7 @@ typedef struct hewn_lattice_blocks {
     uint8_t *constants;      /* whether each constant is inside */
     hewn_lattice_block *surface;
     uint64_t count;
+    uint64_t peak; /* bytes that were in use while the surface's blocks were found, with the volume's own */
     /* The slab's are these. */
     uint64_t first, end;
     hewn_lattice_row (*rows)[HEWN_BLOCK_ROWS];
@@ -95,6 +99,23 @@ static inline void hewn_block_slices(const hewn_lattice *lattice, const hewn_lat
     out[1] = hi < HEWN_BLOCK ? (uint32_t)(hi > 0 ? hi : 0) : HEWN_BLOCK;
 }
 
+/* Where the layer of blocks (of one k) that begins with block `first` ends, or the bar; at `end` in any case. */
+static inline uint64_t hewn_block_layer_end(const hewn_lattice_blocks *blocks, uint64_t first, uint64_t end)
+{
+    uint64_t at = first + 1;
+    while (at < end && blocks->surface[at].place[2] == blocks->surface[first].place[2])
+        at++;
+    return at;
+}
+
+static inline uint64_t hewn_block_bar_end(const hewn_lattice_blocks *blocks, uint64_t first, uint64_t layer_end)
+{
+    uint64_t at = first + 1;
+    while (at < layer_end && blocks->surface[at].place[1] == blocks->surface[first].place[1])
+        at++;
+    return at;
+}
+
 static inline hewn_lattice_row *hewn_block_row(const hewn_lattice_blocks *blocks, uint64_t block, uint32_t y,
                                                uint32_t z)
 {
@@ -105,8 +126,9 @@ static inline hewn_lattice_row *hewn_block_row(const hewn_lattice_blocks *blocks
 uint64_t hewn_block_rim_edges(const hewn_lattice *lattice, uint64_t block, uint32_t axis, uint32_t z);
 
 /* Finds signs, and the blocks of the surface, for a lattice whose frame and threshold are known. HEWN_LIMIT where there
- * are so many that the mesh could not be numbered; HEWN_OUT_OF_MEMORY. */
-hewn_result hewn_lattice_blocks_create(hewn_lattice *lattice, hewn_error *error);
+ * are so many that the mesh could not be numbered; HEWN_OUT_OF_MEMORY, also where they need more than desc->max_memory
+ * (0: no limit); HEWN_CANCELLED. */
+hewn_result hewn_lattice_blocks_create(hewn_lattice *lattice, const hewn_volume_extract_desc *desc, hewn_error *error);
 void hewn_lattice_blocks_destroy(hewn_lattice *lattice);
 
 /* Bytes that it takes without rows, and rows of the slices [begin, end) and the one after. */

@@ -76,14 +76,6 @@ uint32_t hewn_lattice_patch(const hewn_lattice *lattice, uint32_t pattern, uint3
 
 /* --- counts ------------------------------------------------------------------------------------------------------- */
 
-static uint32_t ones(uint64_t bits)
-{
-    uint32_t count = 0;
-    for (; bits; bits &= bits - 1)
-        count++;
-    return count;
-}
-
 static void count_edges(const hewn_lattice *lattice, uint32_t j, uint32_t k, hewn_lattice_row *row)
 {
     const uint64_t *here = hewn_lattice_bits(lattice, j, k);
@@ -92,7 +84,8 @@ static void count_edges(const hewn_lattice *lattice, uint32_t j, uint32_t k, hew
     for (uint32_t word = 0; word < lattice->words; word++) {
         const uint64_t others[3] = {hewn_lattice_next(here, word), beside[word], above[word]};
         for (uint32_t axis = 0; axis < 3; axis++)
-            row->vertices[axis] += ones((here[word] ^ others[axis]) & hewn_lattice_edges(lattice, axis, j, k, word));
+            row->vertices[axis] +=
+                hewn_lattice_ones((here[word] ^ others[axis]) & hewn_lattice_edges(lattice, axis, j, k, word));
     }
 }
 

@@ -176,7 +176,7 @@ hewn_result hewn_volume_extraction_begin(const hewn_volume *volume, const hewn_v
     run->stats.method = method;
     run->stats.below = !lattice->above;
     HEWN_TRY(result);
-    return volume->blocks ? hewn_lattice_blocks_create(lattice, error) : HEWN_OK;
+    return volume->blocks ? hewn_lattice_blocks_create(lattice, desc, error) : HEWN_OK;
 }
 
 void hewn_volume_extraction_free_slab(hewn_volume_extraction *run)
@@ -328,8 +328,10 @@ hewn_result hewn_volume_extract(const hewn_volume *volume, const hewn_volume_ext
                                 hewn_volume_extract_stats *stats, hewn_error *error)
 {
     hewn_volume_extraction run;
+    hewn_volume_extract_desc whole = *desc;
+    whole.max_memory = 0; /* which is for parts */
     *out = (hewn_triangles){0};
-    hewn_result result = hewn_volume_extraction_begin(volume, desc, &run, error);
+    hewn_result result = hewn_volume_extraction_begin(volume, &whole, &run, error);
     if (result == HEWN_OK)
         result = run_stages(&run, out, error);
     hewn_volume_extraction_clear(&run);

@@ -271,6 +271,7 @@ static hewn_result run_passes(stream *of, hewn_error *error)
     of->before = hewn_alloc_zero((size_t)of->slices + 1, sizeof *of->before);
     if (!of->before)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for counts of %u slices", of->slices);
+    HEWN_TRY(note(of, volume->blocks ? run->lattice.blocks->peak : 0, error));
     HEWN_TRY(count_all(of, error));
     HEWN_TRY(hewn_volume_extraction_stage(run, "count", 0.4, error));
     const hewn_lattice_sums all = mesh_before(of, of->slices);

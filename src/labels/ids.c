@@ -243,7 +243,7 @@ static uint16_t id_of(const label_set *ids, int64_t label)
     return (uint16_t)ids->values[set_slot(ids, label)];
 }
 
-/* Ids of 8- and 16-bit samples, by sample; slope and intercept are 1 and 0. */
+/* Ids of 8- and 16-bit samples that lie in a row, by sample; slope and intercept are 1 and 0. */
 static bool make_table(const hewn_volume *volume, const label_set *ids, uint16_t **out)
 {
     static const struct {
@@ -255,7 +255,7 @@ static bool make_table(const hewn_volume *volume, const label_set *ids, uint16_t
                  {HEWN_VOXEL_INT16, INT16_MIN, INT16_MAX}};
     *out = NULL;
     for (size_t t = 0; t < sizeof small / sizeof *small; t++) {
-        if (volume->type != small[t].type || volume->slope != 1 || volume->intercept != 0)
+        if (volume->blocks || volume->type != small[t].type || volume->slope != 1 || volume->intercept != 0)
             continue;
         *out = hewn_alloc_zero((size_t)(small[t].hi - small[t].lo + 1), sizeof **out);
         if (!*out)

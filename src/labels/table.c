@@ -6,6 +6,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/utf8.h"
 #include "hewn/labels.h"
 
 enum { MOST_FIELDS = 64, MOST_BYTES = 64 << 20 };
@@ -142,20 +143,12 @@ static size_t count_numbers(const parser *by, size_t from)
 /* Whether bytes are UTF-8 without control characters: names go into JSON, headers and names of files. */
 static bool is_text(const char *begin, const char *end)
 {
-    for (const unsigned char *at = (const unsigned char *)begin; at < (const unsigned char *)end;) {
-        unsigned more = *at < 0x80 ? 0 : *at >> 5 == 6 ? 1 : *at >> 4 == 14 ? 2 : *at >> 3 == 30 ? 3 : 4;
-        if (*at < 0x20 || *at == 0x7f || more == 4 || (const unsigned char *)end - at <= more)
+    for (const char *at = begin; at < end;) {
+        uint32_t value;
+        size_t length = hewn_utf8_next(at, (size_t)(end - at), &value);
+        if (length == 0 || value < 0x20 || value == 0x7f)
             return false;
-        uint32_t code = more == 0 ? *at : *at & (0x3fu >> more);
-        for (unsigned i = 1; i <= more; i++) {
-            if (at[i] >> 6 != 2)
-                return false;
-            code = code << 6 | (at[i] & 0x3f);
-        }
-        static const uint32_t least[] = {0, 0x80, 0x800, 0x10000};
-        if (code < least[more] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000))
-            return false;
-        at += more + 1;
+        at += length;
     }
     return true;
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clones.h"
 #include "field/operate.h"
 #include "lanes/internal.h"
 #include "lanes/loops.h"
@@ -154,8 +155,8 @@ static void run_other(const hewn_lane_tape *tape, const hewn_lane_step *step, co
         r->unsure[i] += (r->hi[i] - r->lo[i]) * 0.0F;
 }
 
-HEWN_LANE_CLONES static void run_step(const hewn_lane_tape *tape, const hewn_lane_step *step, const float *values,
-                                      const hewn_lane_boxes *boxes, rows *r, uint32_t count)
+HEWN_CLONES static void run_step(const hewn_lane_tape *tape, const hewn_lane_step *step, const float *values,
+                                 const hewn_lane_boxes *boxes, rows *r, uint32_t count)
 {
     const float *alo = r->alo, *ahi = r->ahi, *blo = r->blo, *bhi = r->bhi;
     float *restrict lo = r->lo, *restrict hi = r->hi, *restrict unsure = r->unsure;

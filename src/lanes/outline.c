@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "base/clones.h"
 #include "base/error.h"
 #include "lanes/loops.h"
 
@@ -108,8 +109,8 @@ static inline double square_from(const hewn_lane_side *side, double x, double y,
 }
 
 /* The least square, and 1 where a ray crosses an odd number of all sides, else 0. */
-HEWN_LANE_CLONES static void measure(const hewn_lane_outline *outline, const double *x, const double *y,
-                                     double *restrict least, int64_t *restrict odd, uint32_t count)
+HEWN_CLONES static void measure(const hewn_lane_outline *outline, const double *x, const double *y,
+                                double *restrict least, int64_t *restrict odd, uint32_t count)
 {
     const hewn_lane_side *sides = outline->sides, *end = sides + outline->side_count;
     count &= ~(HEWN_LANE_BLOCK - 1U);

@@ -1,6 +1,7 @@
 /* Values of many samples at once: a pass over the tape, and in each step a loop that becomes vector code. */
 #include <math.h>
 
+#include "base/clones.h"
 #include "field/operate.h"
 #include "lanes/internal.h"
 #include "lanes/loops.h"
@@ -42,8 +43,7 @@ static inline float blend(float a, float b, float size, float inverse)
     r[i] = (EXPRESSION);                                                                                               \
     break
 
-HEWN_LANE_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_lane_points *points,
-                                 uint32_t count)
+HEWN_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_lane_points *points, uint32_t count)
 {
     count &= ~(HEWN_LANE_BLOCK - 1U);
     for (uint32_t at = 0; at < tape->count; at++) {

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/srgb.h"
 #include "mesh/cut.h"
 
 static const hewn_channel *find_colors(const hewn_model *model, hewn_domain domain)
@@ -16,9 +17,7 @@ static const hewn_channel *find_colors(const hewn_model *model, hewn_domain doma
 static float made_linear(double value, bool linear)
 {
     double share = fmin(fmax(value, 0), 1); /* NaN is 0 */
-    if (linear)
-        return (float)share;
-    return (float)(share <= 0.04045 ? share / 12.92 : pow((share + 0.055) / 1.055, 2.4)); /* IEC 61966-2-1 */
+    return (float)(linear ? share : hewn_srgb_to_linear(share));
 }
 
 static float color_at(const hewn_channel *channel, uint64_t element, uint32_t k, bool linear)

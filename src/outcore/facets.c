@@ -154,8 +154,12 @@ static hewn_result take_corner(void *user, const void *record, hewn_error *error
 }
 
 /* Equal positions are in the same region, and follow each other when they are sorted. */
-static hewn_result weld(weld_work *work, hewn_chain *list, hewn_error *error)
+static hewn_result weld(weld_work *work, hewn_chain *list, uint64_t memory, hewn_error *error)
 {
+    if (list->count > memory / CORNER_MEMORY)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY,
+                         "%llu corners lie in one place, too many to weld in the memory allowed",
+                         (unsigned long long)list->count);
     hewn_model part = {.positions = hewn_alloc(list->count, 3 * sizeof *part.positions)};
     work->corners = hewn_alloc(list->count, sizeof *work->corners);
     work->count = 0;
@@ -247,7 +251,7 @@ static hewn_result run(weld_work *work, uint64_t memory, hewn_error *error)
     HEWN_TRY(make_regions(work, memory, error));
     for (uint32_t r = 0; r < work->regions.count; r++)
         if (work->lists[r].count > 0)
-            HEWN_TRY(weld(work, &work->lists[r], error));
+            HEWN_TRY(weld(work, &work->lists[r], memory, error));
     return make_faces(work, error);
 }
 

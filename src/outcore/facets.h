@@ -26,7 +26,7 @@ void hewn_facets_free(hewn_facets *facets);
 hewn_result hewn_facets_add(hewn_facets *facets, const hewn_model *part, hewn_error *error);
 
 /* Adds all to an empty store, within about `memory` bytes. Vertices come region by region, so that near ones have near
- * numbers. HEWN_IO, HEWN_OUT_OF_MEMORY. */
+ * numbers. HEWN_IO; HEWN_OUT_OF_MEMORY, also where more corners lie in one place than that memory holds. */
 hewn_result hewn_facets_weld(hewn_facets *facets, uint64_t memory, hewn_store *store, hewn_error *error);
 
 #endif

@@ -50,8 +50,8 @@ void hewn_store_free(hewn_store *store);
  * is not finite; HEWN_LIMIT for more vertices than indices can name; HEWN_IO; HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_store_add(hewn_store *store, hewn_model *part, hewn_error *error);
 
-/* All is there: polygons are cut, in runs of many, and numbers of vertices checked. HEWN_BAD_INPUT for a vertex that is
- * not there; HEWN_IO; HEWN_OUT_OF_MEMORY. */
+/* All is there: polygons are cut, in runs of many. HEWN_BAD_INPUT for a polygon with a vertex that is not there, while
+ * hewn_store_bounds() finds those of triangles; HEWN_IO; HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_store_finish(hewn_store *store, hewn_error *error);
 
 /* Bytes of a record of the list of triangles. */
@@ -61,8 +61,8 @@ size_t hewn_store_triangle_bytes(const hewn_store *store);
 size_t hewn_store_vertex_bytes(const hewn_store *store);
 hewn_result hewn_store_vertex(hewn_store *store, uint32_t vertex, double position[3], hewn_error *error);
 
-/* A model without vertices and faces, but with channels for so many; `renewed`: also those that are made anew, zero.
- * HEWN_OUT_OF_MEMORY. */
+/* A model with room for so many vertices and faces, and with channels for them; `renewed`: also those that are made
+ * anew, zero. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_store_make_model(const hewn_store *store, uint64_t vertices, uint64_t faces, bool renewed,
                                   hewn_model *out, hewn_error *error);
 

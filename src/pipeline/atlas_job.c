@@ -107,8 +107,11 @@ static hewn_result make(const hewn_atlas_job_desc *desc, hewn_font *font, hewn_a
     hewn_charset set = {0};
     hewn_atlas_desc own = desc->atlas;
     hewn_error reason = {0};
+    uint32_t *characters = NULL;
     hewn_result result = gather(desc, font, &set, error);
-    own.characters = set.items;
+    if (result == HEWN_OK)
+        result = hewn_charset_list(&set, &characters, error);
+    own.characters = characters;
     own.character_count = set.count;
     if (result == HEWN_OK) {
         result = hewn_atlas_create(font, &own, out, &reason);
@@ -117,6 +120,7 @@ static hewn_result make(const hewn_atlas_job_desc *desc, hewn_font *font, hewn_a
         else if (result != HEWN_OK && error)
             *error = reason;
     }
+    hewn_free(characters);
     hewn_charset_clear(&set);
     return result;
 }

@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/srgb.h"
 
 static const hewn_attribute_info color_info = {"color", HEWN_DOMAIN_VERT, HEWN_SCALAR_FLOAT, 3};
 
@@ -174,9 +175,7 @@ hewn_result hewn_mesh_paint_simplify(hewn_triangles *triangles, hewn_mesh_paint 
 
 static uint8_t srgb_byte(float linear)
 {
-    double value = fmin(fmax((double)linear, 0), 1);
-    value = value <= 0.0031308 ? 12.92 * value : 1.055 * pow(value, 1 / 2.4) - 0.055;
-    return (uint8_t)lround(255 * value);
+    return (uint8_t)lround(255 * hewn_srgb_from_linear(fmin(fmax((double)linear, 0), 1)));
 }
 
 hewn_result hewn_mesh_paint_channels(hewn_mesh_paint *paint, hewn_mesh_format format, uint64_t vertex_count,

@@ -156,10 +156,8 @@ static hewn_result expand(search *s, const pair *at, hewn_error *error)
     for (int which = 0; which < 2; which++)
         size[which] = hewn_apart(at->box[which].lo, at->box[which].hi);
     if (fmaxf(size[0], size[1]) <= fmaxf(0.25F * s->tolerance, s->fine)) {
-        float before = s->high;
         try_pair(s, at);
-        if (s->high == before)
-            s->unseen = fminf(s->unseen, at->lower);
+        s->unseen = fminf(s->unseen, at->lower); /* a place that was found in it need not be its nearest */
         return HEWN_OK;
     }
     int which = choose(s, at, size);
@@ -223,15 +221,12 @@ hewn_result hewn_query_clearance(hewn_query *a, hewn_query *b, const hewn_query_
 {
     *out = (hewn_clearance){0};
     hewn_box all;
-    double diagonal = fmax(a->diagonal, b->diagonal), given = desc ? desc->tolerance : 0;
-    if (!(given >= 0) || !isfinite(given))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", given);
-    search s = {.heap.size = sizeof(pair),
-                .high = INFINITY,
-                .unseen = INFINITY,
-                .most_boxes = desc && desc->most_boxes ? desc->most_boxes : 65536};
-    s.fine = fmaxf(a->fine, b->fine);
-    s.tolerance = fmaxf((float)(given > 0 ? given : 1e-3 * diagonal), 4 * s.fine);
+    hewn_query_limits limits;
+    double diagonal = fmax(a->diagonal, b->diagonal);
+    search s = {.heap.size = sizeof(pair), .high = INFINITY, .unseen = INFINITY, .fine = fmaxf(a->fine, b->fine)};
+    HEWN_TRY(hewn_query_find_limits(desc, 1e-3 * diagonal, s.fine, INFINITY, &limits, error));
+    s.tolerance = limits.tolerance;
+    s.most_boxes = limits.most_boxes;
     for (int axis = 0; axis < 3; axis++) {
         all.lo[axis] = fmin(a->box.lo[axis], b->box.lo[axis]);
         all.hi[axis] = fmax(a->box.hi[axis], b->box.hi[axis]);

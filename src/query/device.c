@@ -79,35 +79,6 @@ static void read_answer(const hewn_query *query, const hewn_query_limits *limits
     }
 }
 
-static void find_normal(hewn_asker *asker, hewn_answer *answer)
-{
-    float p[3], g[3];
-    for (int axis = 0; axis < 3; axis++)
-        p[axis] = (float)answer->point[axis];
-    hewn_ask_gradient(asker, p, g);
-    double length = sqrt((double)g[0] * (double)g[0] + (double)g[1] * (double)g[1] + (double)g[2] * (double)g[2]);
-    for (int axis = 0; axis < 3; axis++)
-        answer->normal[axis] = length > 0 && isfinite(length) ? (double)g[axis] / length : 0;
-}
-
-/* What needed more steps than a device has is asked again here, and normals of what rays met are found. */
-static hewn_result finish_on_host(hewn_query *query, const hewn_question *questions, size_t count,
-                                  const hewn_query_limits *limits, hewn_answer *answers, hewn_error *error)
-{
-    hewn_asker asker;
-    HEWN_TRY(hewn_asker_create(query, &asker, error));
-    hewn_result result = HEWN_OK;
-    for (size_t i = 0; i < count && result == HEWN_OK; i++) {
-        bool ball = questions[i].kind == HEWN_QUERY_BALL, ray = questions[i].kind == HEWN_QUERY_RAY;
-        if (!answers[i].complete)
-            result = hewn_query_search(&asker, &questions[i], limits, &answers[i], error);
-        else if (answers[i].found && (ray || (ball && answers[i].inside)))
-            find_normal(&asker, &answers[i]);
-    }
-    hewn_asker_destroy(&asker);
-    return result;
-}
-
 static struct hewn_query_push make_push(const hewn_query *query, const hewn_query_limits *limits)
 {
     struct hewn_query_push push = {.questions = query->on.in.address,
@@ -117,6 +88,8 @@ static struct hewn_query_push make_push(const hewn_query *query, const hewn_quer
     for (int axis = 0; axis < 3; axis++) {
         push.lo[axis] = query->octree.cells->lo[axis];
         push.hi[axis] = query->octree.cells->hi[axis];
+        push.wide_lo[axis] = (float)query->wide.lo[axis];
+        push.wide_hi[axis] = (float)query->wide.hi[axis];
     }
     push.steepness = isfinite(query->steepness) ? nextafterf((float)query->steepness, INFINITY) : 0;
     push.wide_steepness = isfinite(query->wide_steepness) ? nextafterf((float)query->wide_steepness, INFINITY) : 0;
@@ -145,7 +118,6 @@ hewn_result hewn_query_ask_device(hewn_query *query, const hewn_question *questi
         HEWN_TRY(hewn_commands_submit(&commands, NULL, error));
         for (size_t i = 0; i < push.count; i++)
             read_answer(query, limits, (const float *)on->out.mapped + i * HEWN_ANSWER_WORDS, &answers[first + i]);
-        HEWN_TRY(finish_on_host(query, questions + first, push.count, limits, answers + first, error));
     }
     return HEWN_OK;
 }

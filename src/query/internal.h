@@ -18,7 +18,7 @@ struct hewn_query {
     hewn_box box;
     double diagonal;
     double steepness; /* no slope in the box is more; infinite where none is known */
-    hewn_box wide;    /* the same for a box with much room around */
+    hewn_box wide;    /* the same for a box with much room around, of numbers of single precision */
     double wide_steepness;
     float fine; /* shorter than this nothing is told apart, because coordinates are rounded */
     hewn_octree octree;
@@ -30,6 +30,11 @@ typedef struct hewn_query_limits {
     float tolerance;
     uint32_t most_boxes;
 } hewn_query_limits;
+
+/* Finds them; the tolerance is `otherwise` where none is given, and between four times `fine` and `most`.
+ * HEWN_INVALID_ARGUMENT. */
+hewn_result hewn_query_find_limits(const hewn_query_desc *desc, double otherwise, float fine, double most,
+                                   hewn_query_limits *out, hewn_error *error);
 
 /* --- ask.c: values at points ---------------------------------------------------------------------------------------
  */
@@ -91,7 +96,8 @@ hewn_search_box hewn_search_root(const hewn_query *query);
  * of the whole. */
 uint32_t hewn_search_divide(hewn_asker *asker, const hewn_search_box *box, bool solid, hewn_search_box parts[8]);
 
-/* --- search.c, device.c ---------------------------------------------------------------------------------------------
+/* --- search.c, device.c, host.c
+ * ---------------------------------------------------------------------------------------------
  */
 
 /* One question: HEWN_QUERY_NEAREST has only `from`. `along` is unit, no component 0. */
@@ -101,15 +107,36 @@ typedef struct hewn_question {
     float begin, end, radius;
 } hewn_question;
 
-/* What is still unknown of the answer is left 0. */
+/* Answers one; what is still unknown of the answer is left 0. */
 hewn_result hewn_query_search(hewn_asker *asker, const hewn_question *question, const hewn_query_limits *limits,
                               hewn_answer *out, hewn_error *error);
 
 hewn_result hewn_query_open_device(hewn_query *query, hewn_device *device, const hewn_field *field, hewn_node root,
                                    hewn_error *error);
 void hewn_query_close_device(hewn_query *query);
+
+/* What the device has no steps left for is not complete, and what rays met has no normals: hewn_query_finish() sees to
+ * both. */
 hewn_result hewn_query_ask_device(hewn_query *query, const hewn_question *questions, size_t count,
                                   const hewn_query_limits *limits, hewn_answer *answers, hewn_error *error);
+
+/* By all threads: every question, or those that `which` has the indices of; of these, complete ones get normals. */
+hewn_result hewn_query_ask_host(const hewn_query *query, const hewn_question *questions, const uint32_t *which,
+                                size_t count, const hewn_query_limits *limits, hewn_answer *answers, hewn_error *error);
+
+/* Which part of the progress the questions of a block are. */
+typedef struct hewn_query_part {
+    const hewn_progress *progress;
+    double begin, share;
+} hewn_query_part;
+
+/* Does on the host what the device left; between blocks the caller hears how far it is and may cancel. */
+hewn_result hewn_query_finish(const hewn_query *query, const hewn_question *questions, size_t count,
+                              const hewn_query_limits *limits, const hewn_query_part *part, hewn_answer *answers,
+                              hewn_error *error);
+
+/* How many questions to take next, when the last `size` of them took so long. */
+size_t hewn_query_next_block(size_t size, size_t least, size_t most, double seconds);
 
 /* --- lengths.c ------------------------------------------------------------------------------------------------------
  */

@@ -13,10 +13,7 @@
 /* How much room around a box slopes are bounded in, in diagonals. */
 #define ROOM 64.0
 
-enum { LEAST = 64, BLOCK = 4096, MOST_BOXES = 65536 };
-
-/* Seconds: blocks grow while they take less, so that whoever wants to stop is heard soon. */
-#define SHORT 0.05
+enum { LEAST = 64, BLOCK = 4096 };
 
 static hewn_result check_box(const hewn_box *box, hewn_error *error)
 {
@@ -27,9 +24,14 @@ static hewn_result check_box(const hewn_box *box, hewn_error *error)
     return HEWN_OK;
 }
 
+/* Boxes contain what they are in single precision: slopes are bounded wherever a rounded point may be. */
 static void measure(hewn_query *query)
 {
     double square = 0, far = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        query->box.lo[axis] = fmin(query->box.lo[axis], (double)(float)query->box.lo[axis]);
+        query->box.hi[axis] = fmax(query->box.hi[axis], (double)(float)query->box.hi[axis]);
+    }
     for (int axis = 0; axis < 3; axis++) {
         double side = query->box.hi[axis] - query->box.lo[axis];
         square += side * side;
@@ -38,8 +40,8 @@ static void measure(hewn_query *query)
     query->diagonal = sqrt(square);
     query->fine = (float)(FINE * fmax(query->diagonal, far));
     for (int axis = 0; axis < 3; axis++) {
-        query->wide.lo[axis] = query->box.lo[axis] - ROOM * query->diagonal;
-        query->wide.hi[axis] = query->box.hi[axis] + ROOM * query->diagonal;
+        query->wide.lo[axis] = (double)(float)(query->box.lo[axis] - ROOM * query->diagonal);
+        query->wide.hi[axis] = (double)(float)(query->box.hi[axis] + ROOM * query->diagonal);
     }
 }
 
@@ -98,54 +100,37 @@ double hewn_query_slope(const hewn_query *query, const hewn_box *box)
 /* --- asking ---------------------------------------------------------------------------------------------------------
  */
 
-static hewn_result find_limits(const hewn_query *query, const hewn_query_desc *desc, hewn_query_limits *out,
-                               hewn_error *error)
+hewn_result hewn_query_find_limits(const hewn_query_desc *desc, double otherwise, float fine, double most,
+                                   hewn_query_limits *out, hewn_error *error)
 {
+    enum { MOST_BOXES = 65536 };
     double given = desc ? desc->tolerance : 0;
     if (!(given >= 0) || !isfinite(given))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a tolerance of %g makes no sense", given);
-    double tolerance = given > 0 ? given : 1e-4 * query->diagonal;
-    out->tolerance = (float)fmin(fmax(tolerance, 4 * (double)query->fine), query->diagonal);
+    out->tolerance = (float)fmin(fmax(given > 0 ? given : otherwise, 4 * (double)fine), most);
     out->most_boxes = desc && desc->most_boxes ? desc->most_boxes : MOST_BOXES;
     return HEWN_OK;
 }
 
-/* All threads take from one block of questions; between blocks the caller hears how far it is. */
-static hewn_result ask_host(const hewn_query *query, const hewn_question *questions, size_t count,
-                            const hewn_query_limits *limits, hewn_answer *answers, hewn_error *error)
-{
-    hewn_result all = HEWN_OK;
-    hewn_error reason = {0};
-#pragma omp parallel if (count > 1)
-    {
-        hewn_asker asker;
-        hewn_error own = {0};
-        hewn_result result = hewn_asker_create(query, &asker, &own);
-#pragma omp for schedule(dynamic, 4)
-        for (size_t i = 0; i < count; i++)
-            if (result == HEWN_OK)
-                result = hewn_query_search(&asker, &questions[i], limits, &answers[i], &own);
-#pragma omp critical(hewn_query)
-        if (result != HEWN_OK && all == HEWN_OK) {
-            all = result;
-            reason = own;
-        }
-        hewn_asker_destroy(&asker);
-    }
-    if (all != HEWN_OK && error)
-        *error = reason;
-    return all;
-}
-
 /* Questions are made and answered in blocks, so that any number needs little memory. */
 typedef hewn_result make_question(const void *items, size_t index, hewn_question *out, hewn_error *error);
+
+static hewn_result answer(hewn_query *query, const hewn_question *questions, size_t count,
+                          const hewn_query_limits *limits, const hewn_query_part *part, hewn_answer *answers,
+                          hewn_error *error)
+{
+    if (!query->on.device)
+        return hewn_query_ask_host(query, questions, NULL, count, limits, answers, error);
+    HEWN_TRY(hewn_query_ask_device(query, questions, count, limits, answers, error));
+    return hewn_query_finish(query, questions, count, limits, part, answers, error);
+}
 
 static hewn_result ask(hewn_query *query, make_question *make, const void *items, size_t count,
                        const hewn_query_desc *desc, hewn_answer *answers, hewn_error *error)
 {
     hewn_query_limits limits;
     const hewn_progress *progress = desc ? desc->progress : NULL;
-    HEWN_TRY(find_limits(query, desc, &limits, error));
+    HEWN_TRY(hewn_query_find_limits(desc, 1e-4 * query->diagonal, query->fine, query->diagonal, &limits, error));
     size_t block = query->on.device ? 16 * BLOCK : BLOCK;
     hewn_question *questions = hewn_alloc(count < block ? count : block, sizeof *questions);
     if (!questions)
@@ -154,14 +139,13 @@ static hewn_result ask(hewn_query *query, make_question *make, const void *items
     for (size_t first = 0, size = LEAST, taken; first < count && result == HEWN_OK; first += taken) {
         double began = hewn_clock_now();
         taken = count - first < size ? count - first : size;
-        result = hewn_progress_report(progress, "query", (double)first / (double)count, error);
+        const hewn_query_part part = {progress, (double)first / (double)count, (double)taken / (double)count};
+        result = hewn_progress_report(progress, "query", part.begin, error);
         for (size_t i = 0; i < taken && result == HEWN_OK; i++)
             result = make(items, first + i, &questions[i], error);
-        if (result == HEWN_OK && query->on.device)
-            result = hewn_query_ask_device(query, questions, taken, &limits, answers + first, error);
-        else if (result == HEWN_OK)
-            result = ask_host(query, questions, taken, &limits, answers + first, error);
-        size = 2 * size <= block && hewn_clock_now() - began < SHORT ? 2 * size : size;
+        if (result == HEWN_OK)
+            result = answer(query, questions, taken, &limits, &part, answers + first, error);
+        size = hewn_query_next_block(size, LEAST, block, hewn_clock_now() - began);
     }
     hewn_free(questions);
     if (result != HEWN_OK)
@@ -171,8 +155,7 @@ static hewn_result ask(hewn_query *query, make_question *make, const void *items
 
 static bool is_place(const double p[3])
 {
-    enum { FAR = 1 << 30 };
-    return fabs(p[0]) <= FAR && fabs(p[1]) <= FAR && fabs(p[2]) <= FAR;
+    return fabs(p[0]) <= HEWN_QUERY_FAR && fabs(p[1]) <= HEWN_QUERY_FAR && fabs(p[2]) <= HEWN_QUERY_FAR;
 }
 
 static hewn_result make_nearest(const void *items, size_t index, hewn_question *out, hewn_error *error)
@@ -186,34 +169,48 @@ static hewn_result make_nearest(const void *items, size_t index, hewn_question *
     return HEWN_OK;
 }
 
-static hewn_result check_ray(const hewn_ray_desc *ray, size_t index, double length, hewn_error *error)
+static hewn_result check_ray(const hewn_ray_desc *ray, size_t index, double largest, hewn_error *error)
 {
     if (!is_place(ray->from))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "ray %zu does not begin at a place: %g, %g, %g", index,
                          ray->from[0], ray->from[1], ray->from[2]);
-    if (!(length > 0) || !isfinite(length))
+    if (!(largest > 0) || !isfinite(largest))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "ray %zu has no direction: %g, %g, %g", index, ray->along[0],
                          ray->along[1], ray->along[2]);
-    if (!(ray->radius >= 0) || !isfinite(ray->radius))
+    if (!(ray->radius >= 0) || !(ray->radius <= HEWN_QUERY_FAR))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "the radius of ray %zu makes no sense: %g", index, ray->radius);
-    if (!(ray->begin >= 0) || !isfinite(ray->begin) || !isfinite(ray->end) ||
+    if (!(ray->begin >= 0) || !(ray->begin <= HEWN_QUERY_FAR) || !isfinite(ray->end) ||
         (ray->end != 0 && !(ray->end >= ray->begin)))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "ray %zu makes no sense from %g to %g", index, ray->begin,
                          ray->end);
     return HEWN_OK;
 }
 
+/* The largest component; NaN where one is. */
+static double largest_of(const double v[3])
+{
+    double largest = 0;
+    for (int axis = 0; axis < 3; axis++)
+        largest = fabs(v[axis]) > largest || isnan(v[axis]) ? fabs(v[axis]) : largest;
+    return largest;
+}
+
 static hewn_result make_ray(const void *items, size_t index, hewn_question *out, hewn_error *error)
 {
     const hewn_ray_desc *ray = (const hewn_ray_desc *)items + index;
-    double length = sqrt(ray->along[0] * ray->along[0] + ray->along[1] * ray->along[1] + ray->along[2] * ray->along[2]);
-    HEWN_TRY(check_ray(ray, index, length, error));
+    double v[3], length = 0, largest = largest_of(ray->along);
+    HEWN_TRY(check_ray(ray, index, largest, error));
+    for (int axis = 0; axis < 3; axis++) {
+        v[axis] = ray->along[axis] / largest; /* its squares neither overflow nor vanish */
+        length += v[axis] * v[axis];
+    }
+    length = sqrt(length);
     *out = (hewn_question){.kind = ray->radius > 0 ? HEWN_QUERY_BALL : HEWN_QUERY_RAY,
                            .begin = (float)ray->begin,
                            .end = ray->end > 0 ? (float)ray->end : INFINITY,
                            .radius = (float)ray->radius};
     for (int axis = 0; axis < 3; axis++) {
-        double part = ray->along[axis] / length;
+        double part = v[axis] / length;
         out->from[axis] = (float)ray->from[axis];
         out->along[axis] = fabs(part) < 1e-12 ? 1e-12F : (float)part;
     }

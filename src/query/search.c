@@ -13,7 +13,7 @@ typedef struct search {
     const hewn_question *question;
     hewn_heap heap; /* of boxes */
     float high, point[3], normal[3];
-    float unseen; /* the least of boxes too small to divide in which nothing was found */
+    float unseen; /* the least of boxes too small to divide */
 } search;
 
 /* --- places on the surface ------------------------------------------------------------------------------------------
@@ -89,15 +89,14 @@ static void try_box(search *s, const hewn_search_box *box)
 /* --- searching ------------------------------------------------------------------------------------------------------
  */
 
-/* Divides a box; what is left of it goes onto the heap, or, too small for that, counts as unseen. */
+/* Divides a box; what is left of it goes onto the heap, or, too small for that, counts as unseen: a place that was
+ * found in it need not be its nearest. */
 static hewn_result expand(search *s, const hewn_search_box *box, float smallest, hewn_error *error)
 {
     hewn_search_box parts[8];
     if (hewn_apart(box->lo, box->hi) <= smallest) {
-        float before = s->high;
         try_box(s, box);
-        if (s->high == before)
-            s->unseen = fminf(s->unseen, box->lower);
+        s->unseen = fminf(s->unseen, box->lower);
         return HEWN_OK;
     }
     uint32_t count = hewn_search_divide(s->asker, box, s->question->kind == HEWN_QUERY_RAY, parts), best = 0, left = 0;

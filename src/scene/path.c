@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "base/utf8.h"
 #include "scene/scene.h"
 
 /* How much of a path is its folder, the last slash included; 0 where it has none. */
@@ -60,38 +61,21 @@ bool hewn_path_is_inside(const char *path, const char *folder)
     return strncmp(path, folder, length) == 0 && path[length] == '/';
 }
 
-/* How many bytes the UTF-8 character at `text` has, or 0 if it is none (RFC 3629, table 3-7 of the Unicode standard).
- */
-static size_t character_length(const unsigned char *text, size_t left)
-{
-    unsigned char first = text[0];
-    size_t length = first < 0x80 ? 1 : first >= 0xC2 && first < 0xE0 ? 2 : (first & 0xF0) == 0xE0 ? 3 : 4;
-    if ((first >= 0x80 && first < 0xC2) || first > 0xF4 || length > left)
-        return 0;
-    for (size_t i = 1; i < length; i++)
-        if ((text[i] & 0xC0) != 0x80)
-            return 0;
-    if ((first == 0xE0 && text[1] < 0xA0) || (first == 0xED && text[1] > 0x9F) || (first == 0xF0 && text[1] < 0x90) ||
-        (first == 0xF4 && text[1] > 0x8F))
-        return 0;
-    return length;
-}
-
 void hewn_text_clean(char *out, size_t capacity, const char *text, size_t length)
 {
     size_t used = 0;
     for (size_t i = 0; i < length;) {
-        const unsigned char *at = (const unsigned char *)text + i;
-        size_t size = character_length(at, length - i);
-        /* The controls of ASCII and, in two bytes, of Latin-1: a message must not drive a terminal. */
-        bool control = (size == 1 && (*at < 0x20 || *at == 0x7F)) || (size == 2 && at[0] == 0xC2 && at[1] < 0xA0);
+        uint32_t value = 0;
+        size_t size = hewn_utf8_next(text + i, length - i, &value);
+        /* The controls of ASCII and Latin-1: a message must not drive a terminal. */
+        bool control = size > 0 && (value < 0x20 || (value >= 0x7F && value < 0xA0));
         size_t put = size == 0 || control ? 1 : size;
         if (used + put + 1 > capacity)
             break;
         if (size == 0 || control)
             out[used] = size == 0 ? '?' : ' ';
         else
-            memcpy(out + used, at, size);
+            memcpy(out + used, text + i, size);
         used += put;
         i += size == 0 ? 1 : size;
     }

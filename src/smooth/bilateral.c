@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "smooth/blocks.h"
 #include "smooth/guide.h"
 #include "smooth/work.h"
 
@@ -57,15 +58,20 @@ static void measure(const bilateral *filter)
 static double mean_distance(const bilateral *filter)
 {
     const smooth_rows *near = &filter->guide.near;
-    double sum = 0;
-    uint64_t pairs = 0;
-    for (uint32_t t = 0; t < filter->triangles; t++) {
-        for (uint32_t i = near->first[t]; i < near->first[t + 1]; i++)
-            sum += sqrt(
-                squared_distance(filter->centroids + 3 * (size_t)t, filter->centroids + 3 * (size_t)near->items[i]));
-        pairs += near->first[t + 1] - near->first[t] - 1;
+    const uint32_t count = filter->triangles, pairs = near->first[count] - count; /* each is near itself */
+    double all[SMOOTH_BLOCKS], sum = 0;
+#pragma omp parallel for schedule(static)
+    for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++) {
+        const uint32_t end = (uint32_t)smooth_block_begin(count, SMOOTH_BLOCKS, block + 1);
+        all[block] = 0;
+        for (uint32_t t = (uint32_t)smooth_block_begin(count, SMOOTH_BLOCKS, block); t < end; t++)
+            for (uint32_t i = near->first[t]; i < near->first[t + 1]; i++)
+                all[block] += sqrt(squared_distance(filter->centroids + 3 * (size_t)t,
+                                                    filter->centroids + 3 * (size_t)near->items[i]));
     }
-    return pairs > 0 ? sum / (double)pairs : 0;
+    for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
+        sum += all[block];
+    return pairs > 0 ? sum / pairs : 0;
 }
 
 static void filter_normal(const bilateral *filter, uint32_t t, double out[3])
@@ -130,19 +136,21 @@ static void follow_normals(bilateral *filter)
 static double find_noise(const bilateral *filter)
 {
     uint64_t edges = 0, seen = 0;
-    memset(filter->bends, 0, BENDS * sizeof *filter->bends);
+    uint32_t *bends = filter->bends;
+    memset(bends, 0, BENDS * sizeof *bends);
+#pragma omp parallel for schedule(static) reduction(+ : edges, bends[:BENDS])
     for (uint32_t t = 0; t < filter->triangles; t++) {
         for (size_t side = 0; side < 3; side++) {
             uint32_t other = filter->guide.beside[3 * (size_t)t + side];
             if (other <= t)
                 continue;
             double bend = squared_distance(filter->normals + 3 * (size_t)t, filter->normals + 3 * (size_t)other);
-            filter->bends[(uint32_t)fmin(sqrt(bend) / 2 * BENDS, BENDS - 1)]++;
+            bends[(uint32_t)fmin(sqrt(bend) / 2 * BENDS, BENDS - 1)]++;
             edges++;
         }
     }
     uint32_t bin = 0;
-    while (bin < BENDS - 1 && (seen += filter->bends[bin]) < (edges + 1) / 2)
+    while (bin < BENDS - 1 && (seen += bends[bin]) < (edges + 1) / 2)
         bin++;
     return 2.0 * (bin + 0.5) / BENDS;
 }
@@ -184,6 +192,7 @@ hewn_result hewn_smooth_bilateral(smooth_work *work, hewn_error *error)
 {
     bilateral filter = {.work = work, .triangles = (uint32_t)work->cut.face_count};
     size_t count = filter.triangles;
+    HEWN_TRY(hewn_smooth_take_room(work, error));
     double *room = hewn_alloc(count, 13 * sizeof *room);
     filter.bends = hewn_alloc(BENDS, sizeof *filter.bends);
     if (!room || !filter.bends) {

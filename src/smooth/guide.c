@@ -61,21 +61,35 @@ static void find_patches(smooth_guide *guide, const patch_finder *finder)
     }
 }
 
+/* Where the rows of near triangles begin; returns their sum, with which `first` ends where it fits. */
+static uint64_t count_near(const patch_finder *finder, uint32_t *first, uint32_t count)
+{
+    uint64_t sum = 0;
+#pragma omp parallel for schedule(dynamic, 1024)
+    for (uint32_t t = 0; t < count; t++) {
+        uint32_t near[MOST_NEAR];
+        first[t] = find_near(finder, t, near);
+    }
+    for (uint32_t t = 0; t < count; t++) {
+        const uint32_t length = first[t];
+        first[t] = (uint32_t)sum;
+        sum += length;
+    }
+    first[count] = (uint32_t)sum;
+    return sum;
+}
+
 hewn_result hewn_smooth_guide_init(smooth_guide *guide, const hewn_polygons *cut, const smooth_rows *fans,
                                    hewn_error *error)
 {
-    uint32_t count = (uint32_t)cut->face_count, near[MOST_NEAR];
+    const uint32_t count = (uint32_t)cut->face_count;
     patch_finder finder = {.cut = cut, .fans = fans};
     *guide =
         (smooth_guide){.near = {.count = count, .first = hewn_alloc((size_t)count + 1, sizeof *guide->near.first)}};
     guide->beside = hewn_alloc(count, 3 * sizeof *guide->beside);
     guide->means = hewn_alloc(count, 3 * sizeof *guide->means);
     guide->roughness = hewn_alloc(count, sizeof *guide->roughness);
-    uint64_t sum = 0;
-    for (uint32_t t = 0; guide->near.first && t < count; t++) {
-        guide->near.first[t] = (uint32_t)sum;
-        sum += find_near(&finder, t, near);
-    }
+    uint64_t sum = guide->near.first ? count_near(&finder, guide->near.first, count) : 0;
     hewn_result result = HEWN_OK;
     if (sum > UINT32_MAX)
         result = hewn_fail(error, HEWN_LIMIT, "%u triangles have more than 2^32 neighbours", count);
@@ -88,7 +102,6 @@ hewn_result hewn_smooth_guide_init(smooth_guide *guide, const hewn_polygons *cut
         hewn_smooth_guide_free(guide);
         return result;
     }
-    guide->near.first[count] = (uint32_t)sum;
     find_patches(guide, &finder);
     return HEWN_OK;
 }
@@ -104,11 +117,11 @@ void hewn_smooth_guide_free(smooth_guide *guide)
 
 /* --- guides ------------------------------------------------------------------------------------------------------- */
 
-static double apart(const double *a, const double *b)
+static double squared_distance(const double *a, const double *b)
 {
     double d[3];
     smooth_between(a, b, d);
-    return sqrt(smooth_dot(d, d));
+    return smooth_dot(d, d);
 }
 
 static bool is_in_patch(const uint32_t *items, uint32_t count, uint32_t t)
@@ -128,18 +141,20 @@ static double find_roughness(const smooth_guide *guide, uint32_t t, const double
     double widest = 0, sharpest = 0, sum = 0;
     for (uint32_t i = 0; i < count; i++) {
         const double *normal = normals + 3 * (size_t)items[i];
-        for (uint32_t k = i + 1; k < count; k++)
-            widest = fmax(widest, apart(normal, normals + 3 * (size_t)items[k]));
+        for (uint32_t k = i + 1; k < count; k++) {
+            const double square = squared_distance(normal, normals + 3 * (size_t)items[k]);
+            widest = square > widest ? square : widest;
+        }
         for (int side = 0; side < 3; side++) {
             uint32_t other = guide->beside[3 * (size_t)items[i] + (size_t)side];
             if (other <= items[i] || !is_in_patch(items, count, other))
                 continue;
-            double bend = apart(normal, normals + 3 * (size_t)other);
-            sharpest = fmax(sharpest, bend);
+            const double bend = sqrt(squared_distance(normal, normals + 3 * (size_t)other));
+            sharpest = bend > sharpest ? bend : sharpest;
             sum += bend;
         }
     }
-    return widest * (1e-9 + sharpest / (1e-9 + sum));
+    return sqrt(widest) * (1e-9 + sharpest / (1e-9 + sum));
 }
 
 static void find_mean(const smooth_guide *guide, uint32_t t, const double *normals, const double *areas)

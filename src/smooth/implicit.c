@@ -1,6 +1,6 @@
 /* Mean curvature flow by backward Euler: (M / t + L) x' = (M / t) x, with the weights and areas of the start kept for
- * all steps, so that one factorisation serves steps and axes. M and L are symmetric; with M / t > 0 the sum is positive
- * definite for any step. Vertices that do not move are no unknowns.
+ * all steps, or as many as are asked for, so that one factorisation serves steps and axes. M and L are symmetric; with
+ * M / t > 0 the sum is positive definite for any step. Vertices that do not move are no unknowns.
  *
  * CHOLMOD (Chen, Davis, Hager, Rajamanickam 2008) factors by supernodes, with the order of METIS: its products are
  * BLAS', so bytes are the same for one BLAS and its number of threads. */
@@ -162,17 +162,6 @@ static void add_fixed(const implicit_solve *solve, uint32_t v, double right[3])
     }
 }
 
-static hewn_result factor(implicit_solve *solve, hewn_error *error)
-{
-    solve->factor = cholmod_analyze(solve->matrix, &solve->common);
-    if (!solve->factor)
-        return explain(solve, error);
-    HEWN_TRY(hewn_progress_report(solve->work->desc->progress, "smooth", 0.2, error));
-    if (!cholmod_factorize(solve->matrix, solve->factor, &solve->common) || solve->common.status != CHOLMOD_OK)
-        return explain(solve, error);
-    return hewn_progress_report(solve->work->desc->progress, "smooth", 0.6, error);
-}
-
 /* `fixed` is three numbers an unknown, the same in every step. */
 static hewn_result take_step(implicit_solve *solve, const double *fixed, hewn_error *error)
 {
@@ -193,12 +182,10 @@ static hewn_result take_step(implicit_solve *solve, const double *fixed, hewn_er
     return HEWN_OK;
 }
 
-static hewn_result run_steps(implicit_solve *solve, double *fixed, hewn_error *error)
+static void find_fixed(const implicit_solve *solve, double *fixed)
 {
     const smooth_work *work = solve->work;
-    size_t n = solve->unknowns;
-    smooth_measure_triangles(work, solve->triangles);
-    HEWN_TRY(build_matrix(solve, error));
+    const size_t n = solve->unknowns;
     for (uint32_t v = 0; v < work->count; v++) {
         double sum[3] = {0, 0, 0};
         if (solve->unknown[v] == HEWN_NONE)
@@ -207,20 +194,58 @@ static hewn_result run_steps(implicit_solve *solve, double *fixed, hewn_error *e
         for (size_t axis = 0; axis < 3; axis++)
             fixed[axis * n + solve->unknown[v]] = sum[axis];
     }
-    HEWN_TRY(factor(solve, error));
+}
+
+static hewn_result report(const implicit_solve *solve, double steps, hewn_error *error)
+{
+    const hewn_smooth_desc *desc = solve->work->desc;
+    return hewn_progress_report(desc->progress, "smooth", fmin(steps / desc->iterations, 1), error);
+}
+
+static hewn_result factor(implicit_solve *solve, uint32_t done, hewn_error *error)
+{
+    solve->factor = cholmod_analyze(solve->matrix, &solve->common);
+    if (!solve->factor)
+        return explain(solve, error);
+    HEWN_TRY(report(solve, done + 0.2, error));
+    if (!cholmod_factorize(solve->matrix, solve->factor, &solve->common) || solve->common.status != CHOLMOD_OK)
+        return explain(solve, error);
+    return report(solve, done + 0.6, error);
+}
+
+/* Steps by weights that are measured before the first of them. */
+static hewn_result run_round(implicit_solve *solve, uint32_t begin, uint32_t end, double *fixed, hewn_error *error)
+{
+    smooth_measure_triangles(solve->work, solve->triangles);
+    HEWN_TRY(build_matrix(solve, error));
+    find_fixed(solve, fixed);
+    HEWN_TRY(factor(solve, begin, error));
     cholmod_free_sparse(&solve->matrix, &solve->common);
+    for (uint32_t i = begin; i < end; i++) {
+        HEWN_TRY(take_step(solve, fixed, error));
+        HEWN_TRY(report(solve, i + 1.0, error));
+    }
+    cholmod_free_factor(&solve->factor, &solve->common);
+    return HEWN_OK;
+}
+
+static hewn_result run_steps(implicit_solve *solve, double *fixed, hewn_error *error)
+{
+    const size_t n = solve->unknowns;
+    const uint32_t steps = solve->work->desc->iterations, again = solve->work->desc->remeasure;
     solve->right = cholmod_allocate_dense(n, 3, n, CHOLMOD_REAL, &solve->common);
     if (!solve->right)
         return explain(solve, error);
-    for (uint32_t i = 0; i < work->desc->iterations; i++) {
-        HEWN_TRY(hewn_progress_report(work->desc->progress, "smooth", 0.6 + 0.4 * i / work->desc->iterations, error));
-        HEWN_TRY(take_step(solve, fixed, error));
+    for (uint32_t begin = 0, end; begin < steps; begin = end) {
+        end = again > 0 && again < steps - begin ? begin + again : steps;
+        HEWN_TRY(run_round(solve, begin, end, fixed, error));
     }
     return HEWN_OK;
 }
 
 hewn_result hewn_smooth_implicit(smooth_work *work, hewn_error *error)
 {
+    hewn_smooth_sides_free(&work->sides);
     implicit_solve solve = {.work = work, .unknown = hewn_alloc(work->count, sizeof *solve.unknown)};
     if (!solve.unknown)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);

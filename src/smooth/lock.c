@@ -121,11 +121,13 @@ hewn_result hewn_smooth_lock(smooth_work *work, hewn_error *error)
         HEWN_TRY(lock_edges(work, error));
     bool rims_stay = desc->method == HEWN_SMOOTH_COTAN || desc->method == HEWN_SMOOTH_IMPLICIT;
     bool rims_slide = !rims_stay && desc->method != HEWN_SMOOTH_BILATERAL;
+    uint64_t locked = 0;
+#pragma omp parallel for schedule(static) reduction(+ : locked)
     for (uint32_t v = 0; v < work->count; v++) {
         bool rim = work->flags[v] & SMOOTH_RIM;
         bool corner = rim && rims_slide && work->neighbours.first[v] == work->neighbours.first[v + 1];
-        work->report->locked_vertices +=
-            work->flags[v] & SMOOTH_USED && (smooth_freedom(work, v) <= 0 || (rim && rims_stay) || corner);
+        locked += work->flags[v] & SMOOTH_USED && (smooth_freedom(work, v) <= 0 || (rim && rims_stay) || corner);
     }
+    work->report->locked_vertices = locked;
     return HEWN_OK;
 }

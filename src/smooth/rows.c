@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "smooth/blocks.h"
+#include "smooth/four.h"
 
-enum { MOST_PARTS = 8, SHORT_ROW = 48, MOST_INSIDE = 8 };
+enum { MOST_PARTS = 8, SHORT_ROW = 48 };
 
 void hewn_smooth_rows_free(smooth_rows *rows)
 {
@@ -15,20 +17,22 @@ void hewn_smooth_rows_free(smooth_rows *rows)
     *rows = (smooth_rows){0};
 }
 
-/* --- corners ------------------------------------------------------------------------------------------------------ */
+void hewn_smooth_sides_free(smooth_sides *sides)
+{
+    hewn_free(sides->first);
+    hewn_free(sides->items);
+    *sides = (smooth_sides){0};
+}
 
-/* The vertices before and after a corner in its face. */
-typedef struct corner_sides {
-    uint32_t next, before;
-} corner_sides;
+/* --- corners ------------------------------------------------------------------------------------------------------ */
 
 /* Corners of all faces are handed to the vertices by several threads at once: each reads all of them and serves a range
  * of vertices of its own, so no order depends on threads. Without rows to fill they are only counted. */
 typedef struct row_filler {
     const hewn_polygons *polygons;
-    uint32_t *ends;      /* of each row, counted up while it is filled */
-    uint32_t *corners;   /* rows of corners, or */
-    corner_sides *sides; /* rows of their sides */
+    uint32_t *ends;     /* of each row, counted up while it is filled */
+    uint32_t *corners;  /* rows of corners, or */
+    smooth_side *sides; /* rows of their sides */
 } row_filler;
 
 typedef enum row_kind { COUNTED, CORNERS, SIDES } row_kind;
@@ -36,7 +40,7 @@ typedef enum row_kind { COUNTED, CORNERS, SIDES } row_kind;
 /* A range of vertices, which one thread serves with rows of one kind. */
 typedef struct row_server {
     uint32_t *ends, *corners;
-    corner_sides *sides;
+    smooth_side *sides;
     uint32_t from, length;
 } row_server;
 
@@ -49,7 +53,7 @@ static inline void serve(const row_server *to, row_kind kind, uint64_t corner, c
     if (kind == CORNERS)
         to->corners[place] = (uint32_t)corner;
     if (kind == SIDES)
-        to->sides[place] = (corner_sides){around[2], around[0]};
+        to->sides[place] = (smooth_side){around[2], around[0]};
 }
 
 static inline void serve_triangles(const hewn_polygons *polygons, row_server to, row_kind kind)
@@ -124,6 +128,28 @@ static hewn_result count_corners(const hewn_polygons *polygons, uint32_t **first
     return HEWN_OK;
 }
 
+hewn_result hewn_smooth_sides_find(const hewn_polygons *polygons, smooth_sides *out, hewn_error *error)
+{
+    *out = (smooth_sides){.count = (uint32_t)polygons->vertex_count};
+    hewn_result result = count_corners(polygons, &out->first, error);
+    if (result == HEWN_OK) {
+        /* Rows are read SMOOTH_EIGHT at a time, the last one too. */
+        const size_t sum = out->first[out->count + 1];
+        out->items = hewn_alloc(sum + SMOOTH_EIGHT, sizeof *out->items);
+        if (out->items)
+            memset(out->items + sum, 0, SMOOTH_EIGHT * sizeof *out->items);
+        else
+            result = out_of_memory(out->count, error);
+    }
+    if (result != HEWN_OK) {
+        hewn_smooth_sides_free(out);
+        return result;
+    }
+    const row_filler filler = {.polygons = polygons, .ends = out->first + 1, .sides = out->items};
+    serve_all(&filler);
+    return HEWN_OK;
+}
+
 hewn_result hewn_smooth_corners(const hewn_polygons *polygons, smooth_rows *out, hewn_error *error)
 {
     *out = (smooth_rows){.count = (uint32_t)polygons->vertex_count};
@@ -185,92 +211,124 @@ static uint32_t settle_rim(uint32_t *row, uint32_t length, uint8_t *flags)
     return rims == 0 ? kept : rims == 2 ? 2 : 0;
 }
 
-/* Sorts `count` of MOST_INSIDE items by counting those that are less, without a branch; false where two are the same.
- * Items past the count are INT32_MAX, which no vertex is. */
-static bool rank_sort(const int32_t items[MOST_INSIDE], uint32_t count, uint32_t *out)
+#define SPREAD(HALF, LANE) __builtin_shufflevector(HALF, HALF, LANE, LANE, LANE, LANE)
+
+/* Whether each of the items stands exactly once in `among`. */
+static inline bool stand_once(const smooth_eight *items, const smooth_eight *among)
 {
-    int32_t ranks[MOST_INSIDE] = {0};
-    uint32_t taken = 0;
-    for (int k = 0; k < MOST_INSIDE; k++)
-        for (int i = 0; i < MOST_INSIDE; i++)
-            ranks[i] += items[k] < items[i];
-    for (uint32_t i = 0; i < count; i++) {
-        out[ranks[i]] = (uint32_t)items[i];
-        taken |= 1u << ranks[i];
+    const smooth_four none = {0};
+    smooth_eight found = {{none, none}};
+    for (int half = 0; half < 2; half++) {
+        const smooth_four each[4] = {SPREAD(among->half[half], 0), SPREAD(among->half[half], 1),
+                                     SPREAD(among->half[half], 2), SPREAD(among->half[half], 3)};
+        for (int k = 0; k < 4; k++) {
+            found.half[0] += items->half[0] == each[k]; /* -1 where they are the same */
+            found.half[1] += items->half[1] == each[k];
+        }
     }
-    return taken == (1u << count) - 1;
+    const smooth_four wrong = (found.half[0] + 1) | (found.half[1] + 1);
+    return (wrong[0] | wrong[1] | wrong[2] | wrong[3]) == 0;
 }
 
-/* Whether each of `count` items stands exactly once in `among`. */
-static bool stand_once(const int32_t items[MOST_INSIDE], const int32_t among[MOST_INSIDE], uint32_t count)
+/* Around most vertices each neighbour comes after one corner and before another: then those after corners, in the order
+ * of corners, are the row. Items past the length are what only they are. */
+static inline bool settle_inside(const smooth_side *sides, uint32_t length, uint32_t v, smooth_eight *out)
 {
-    int32_t found[MOST_INSIDE] = {0}, wrong = 0;
-    for (int k = 0; k < MOST_INSIDE; k++)
-        for (int i = 0; i < MOST_INSIDE; i++)
-            found[i] += items[i] == among[k];
-    for (uint32_t i = 0; i < count; i++)
-        wrong |= found[i] ^ 1;
-    return wrong == 0;
-}
-
-/* Around most vertices each neighbour comes after one corner and before another: these are sorted to `out`. */
-static bool settle_inside(const corner_sides *sides, uint32_t length, uint32_t v, uint32_t out[MOST_INSIDE])
-{
-    int32_t next[MOST_INSIDE], before[MOST_INSIDE];
-    bool itself = length == 0;
-    for (uint32_t i = 0; i < MOST_INSIDE; i++)
-        next[i] = before[i] = INT32_MAX;
-    for (uint32_t i = 0; i < length; i++) {
-        next[i] = (int32_t)sides[i].next;
-        before[i] = (int32_t)sides[i].before;
-        itself = itself || next[i] == (int32_t)v;
+    smooth_four pairs[4], itself = {0};
+    smooth_eight before;
+    memcpy(pairs, sides, sizeof pairs);
+    for (int half = 0; half < 2; half++) {
+        const smooth_four lane = (smooth_four){0, 1, 2, 3} + 4 * half, held = lane < (int32_t)length;
+        const smooth_four other = INT32_MIN + lane;
+        const smooth_four next = __builtin_shufflevector(pairs[2 * half], pairs[2 * half + 1], 0, 2, 4, 6);
+        const smooth_four last = __builtin_shufflevector(pairs[2 * half], pairs[2 * half + 1], 1, 3, 5, 7);
+        out->half[half] = (held & next) | (~held & other);
+        before.half[half] = (held & last) | (~held & other);
+        itself |= out->half[half] == (int32_t)v;
     }
-    return !itself && stand_once(next, before, length) && rank_sort(next, length, out);
+    return (itself[0] | itself[1] | itself[2] | itself[3]) == 0 && stand_once(out, &before) && stand_once(&before, out);
 }
 
-/* Rows under way: those of sides, in whose order vertices are served, become rows of neighbours. */
+/* Rows under way: those of sides become rows of neighbours. */
 typedef struct row_settler {
-    const uint32_t *places; /* where rows begin, by their corners */
-    corner_sides *sides;
-    uint32_t *items; /* room for a neighbour a corner */
+    const smooth_sides *sides;
+    uint32_t *lengths; /* of rows; NOT_SETTLED at first where they are not inside */
+    uint32_t *items;   /* room for a neighbour a corner */
+    uint32_t *room;    /* for two neighbours a corner */
+    uint8_t *flags;
 } row_settler;
+
+#define NOT_SETTLED UINT32_MAX
+
+/* Settles the rows inside a surface among a range of vertices; whether those are all. */
+static bool settle_block(const row_settler *rows, uint32_t begin, uint32_t end)
+{
+    const uint32_t *first = rows->sides->first;
+    bool all = true;
+    for (uint32_t v = begin; v < end; v++) {
+        const uint32_t place = first[v], length = first[v + 1] - place;
+        smooth_eight row;
+        if (length == 0 || length > SMOOTH_EIGHT || !settle_inside(rows->sides->items + place, length, v, &row)) {
+            rows->lengths[v] = NOT_SETTLED;
+            all = false;
+            continue;
+        }
+        /* What is written past a row is written over by the rows that follow in the block. */
+        smooth_eight_copy(rows->items + place, &row, length, first[end] - place);
+        rows->lengths[v] = length;
+        rows->flags[v] = SMOOTH_USED;
+    }
+    return all;
+}
+
+static bool settle_inner(const row_settler *rows)
+{
+    const uint32_t count = rows->sides->count;
+    bool all = true;
+#pragma omp parallel for schedule(static) reduction(&& : all)
+    for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++) {
+        const bool here = settle_block(rows, (uint32_t)smooth_block_begin(count, SMOOTH_BLOCKS, block),
+                                       (uint32_t)smooth_block_begin(count, SMOOTH_BLOCKS, block + 1));
+        all = all && here;
+    }
+    return all;
+}
 
 /* Where a row of `kept` neighbours lies: a vertex of a rim may have one more than it has corners. */
 static uint32_t *settled_row(const row_settler *rows, uint32_t v, uint32_t kept)
 {
-    const uint32_t place = rows->places[v], length = rows->places[v + 1] - place;
-    return kept <= length ? rows->items + place : (uint32_t *)(rows->sides + place);
+    const uint32_t place = rows->sides->first[v], length = rows->sides->first[v + 1] - place;
+    return kept <= length ? rows->items + place : rows->room + 2 * (size_t)place;
 }
 
 /* Finds the neighbours of a vertex; returns how many they are. */
-static uint32_t settle_row(const row_settler *rows, uint32_t v, uint8_t *flags)
+static uint32_t settle_row(const row_settler *rows, uint32_t v)
 {
-    corner_sides *sides = rows->sides + rows->places[v];
-    const uint32_t length = rows->places[v + 1] - rows->places[v];
-    uint32_t inside[MOST_INSIDE], *row = (uint32_t *)sides, kept = 0;
-    if (length <= MOST_INSIDE && settle_inside(sides, length, v, inside)) {
-        memcpy(rows->items + rows->places[v], inside, length * sizeof *inside);
-        *flags = SMOOTH_USED;
-        return length;
+    const smooth_sides *sides = rows->sides;
+    uint32_t *row = rows->room + 2 * (size_t)sides->first[v], kept = 0;
+    for (uint32_t i = sides->first[v]; i < sides->first[v + 1]; i++) {
+        const uint32_t around[2] = {sides->items[i].next, sides->items[i].before};
+        for (int k = 0; k < 2; k++)
+            if (around[k] != v)
+                row[kept++] = around[k];
     }
-    for (uint32_t i = 0; i < 2 * length; i++)
-        if (row[i] != v)
-            row[kept++] = row[i];
-    kept = settle_rim(row, kept, flags);
-    if (kept <= length)
-        memcpy(rows->items + rows->places[v], row, kept * sizeof *row);
+    kept = settle_rim(row, kept, rows->flags + v);
+    uint32_t *to = settled_row(rows, v, kept);
+    if (to != row)
+        memcpy(to, row, kept * sizeof *row);
     return kept;
 }
 
-/* Settles all rows, whose lengths go to `lengths`; returns whether each is as long as it has corners, which is so for
- * closed surfaces. */
-static bool settle_each(const row_settler *rows, uint32_t count, uint32_t *lengths, uint8_t *flags)
+/* Settles the other rows; returns whether each row is as long as it has corners, which is so for closed surfaces. */
+static bool settle_outer(const row_settler *rows)
 {
+    const uint32_t *first = rows->sides->first;
     bool even = true;
 #pragma omp parallel for schedule(static) reduction(&& : even)
-    for (uint32_t v = 0; v < count; v++) {
-        lengths[v] = settle_row(rows, v, flags + v);
-        even = even && lengths[v] == rows->places[v + 1] - rows->places[v];
+    for (uint32_t v = 0; v < rows->sides->count; v++) {
+        if (rows->lengths[v] == NOT_SETTLED)
+            rows->lengths[v] = settle_row(rows, v);
+        even = even && rows->lengths[v] == first[v + 1] - first[v];
     }
     return even;
 }
@@ -296,38 +354,36 @@ static hewn_result take_rows(const row_settler *rows, smooth_rows *out, hewn_err
     return HEWN_OK;
 }
 
-static hewn_result settle_rows(const hewn_polygons *polygons, uint32_t **places, smooth_rows *out, uint8_t *flags,
-                               hewn_error *error)
+static hewn_result settle_rest(row_settler *rows, smooth_rows *out, hewn_error *error)
 {
-    row_settler rows = {*places, hewn_alloc((*places)[out->count + 1], sizeof *rows.sides),
-                        hewn_alloc((*places)[out->count + 1], sizeof *rows.items)};
-    hewn_result result = rows.sides && rows.items ? HEWN_OK : out_of_memory(out->count, error);
-    if (result == HEWN_OK) {
-        const row_filler filler = {.polygons = polygons, .ends = *places + 1, .sides = rows.sides};
-        serve_all(&filler);
-        if (settle_each(&rows, out->count, out->first, flags)) {
-            hewn_free(out->first);
-            *out = (smooth_rows){out->count, *places, rows.items};
-            *places = rows.items = NULL;
-        } else {
-            result = take_rows(&rows, out, error);
-        }
-    }
-    hewn_free(rows.sides);
-    hewn_free(rows.items);
+    rows->room = hewn_alloc(rows->sides->first[out->count], 2 * sizeof *rows->room);
+    if (!rows->room)
+        return out_of_memory(out->count, error);
+    hewn_result result = HEWN_OK;
+    if (!settle_outer(rows))
+        result = take_rows(rows, out, error);
+    hewn_free(rows->room);
     return result;
 }
 
-hewn_result hewn_smooth_neighbours(const hewn_polygons *polygons, smooth_rows *out, uint8_t *flags, hewn_error *error)
+hewn_result hewn_smooth_neighbours(const smooth_sides *sides, smooth_rows *out, uint8_t *flags, hewn_error *error)
 {
-    uint32_t count = (uint32_t)polygons->vertex_count, *places = NULL;
-    *out = (smooth_rows){.count = count, .first = hewn_alloc((size_t)count + 1, sizeof *out->first)};
-    hewn_result result = out->first ? HEWN_OK : out_of_memory(count, error);
-    if (result == HEWN_OK)
-        result = count_corners(polygons, &places, error);
-    if (result == HEWN_OK)
-        result = settle_rows(polygons, &places, out, flags, error);
-    hewn_free(places);
+    *out = (smooth_rows){.count = sides->count, .first = hewn_alloc((size_t)sides->count + 1, sizeof *out->first)};
+    row_settler rows = {
+        .sides = sides,
+        .lengths = out->first,
+        .items = hewn_alloc(sides->first[sides->count], sizeof *rows.items),
+        .flags = flags,
+    };
+    hewn_result result = out->first && rows.items ? HEWN_OK : out_of_memory(sides->count, error);
+    if (result == HEWN_OK && !settle_inner(&rows))
+        result = settle_rest(&rows, out, error);
+    if (result == HEWN_OK && !out->items) { /* each row is as long as it has corners */
+        memcpy(out->first, sides->first, ((size_t)sides->count + 1) * sizeof *out->first);
+        out->items = rows.items;
+        rows.items = NULL;
+    }
+    hewn_free(rows.items);
     if (result != HEWN_OK)
         hewn_smooth_rows_free(out);
     return result;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "base/clones.h"
 #include "mesh/cut.h"
 #include "smooth/blocks.h"
 #include "smooth/cotangent.h"
@@ -94,7 +95,7 @@ static hewn_result check_polygons(const hewn_polygons *polygons, const double *f
 
 /* Lengths are measured from the middle of the box, so that a mesh far from the origin loses nothing. */
 typedef struct frame {
-    double origin[3], scale;
+    double origin[3], scale, inverse; /* powers of two */
 } frame;
 
 typedef struct extent {
@@ -103,7 +104,7 @@ typedef struct extent {
 
 static double place_in(const frame *in, const double *positions, size_t vertex, size_t axis)
 {
-    return (positions[3 * vertex + axis] - in->origin[axis]) / in->scale;
+    return (positions[3 * vertex + axis] - in->origin[axis]) * in->inverse;
 }
 
 static extent find_extent(const hewn_polygons *polygons)
@@ -133,7 +134,7 @@ static extent find_extent(const hewn_polygons *polygons)
 static frame find_frame(const hewn_polygons *polygons)
 {
     double most = 0;
-    frame out = {{0, 0, 0}, 1};
+    frame out = {{0, 0, 0}, 1, 1};
     extent whole = find_extent(polygons);
     for (int axis = 0; axis < 3 && polygons->vertex_count > 0; axis++) {
         out.origin[axis] = whole.lo[axis] / 2 + whole.hi[axis] / 2;
@@ -141,8 +142,11 @@ static frame find_frame(const hewn_polygons *polygons)
     }
     int exponent = 0;
     (void)frexp(most, &exponent);
-    if (most > 0)
-        out.scale = ldexp(1, exponent > 1000 ? 1000 : exponent < -1000 ? -1000 : exponent);
+    exponent = exponent > 1000 ? 1000 : exponent < -1000 ? -1000 : exponent;
+    if (most > 0) {
+        out.scale = ldexp(1, exponent);
+        out.inverse = ldexp(1, -exponent);
+    }
     return out;
 }
 
@@ -151,23 +155,58 @@ typedef struct measures {
     double volume, area, sides;
 } measures;
 
-static measures measure_block(const smooth_work *work, const double *positions, uint64_t begin, uint64_t end)
+/* Triangles that are measured at a time: their first corners and the edges from there; and their sums, lane by lane. */
+enum { LANES = 8 };
+typedef struct triangle_lanes {
+    double a[3][LANES], u[3][LANES], v[3][LANES];
+    double volume[LANES], area[LANES], sides[LANES];
+} triangle_lanes;
+
+/* Lanes past the count are triangles without area. */
+static HEWN_INTO_CLONES void gather(const uint32_t *corners, uint64_t count, const double *positions,
+                                    triangle_lanes *out)
 {
-    measures sum = {0, 0, 0};
-    for (uint64_t t = begin; t < end; t++) {
-        const uint32_t *corner = work->cut.corners + 3 * t;
-        const double *a = positions + 3 * (size_t)corner[0], *b = positions + 3 * (size_t)corner[1],
-                     *c = positions + 3 * (size_t)corner[2];
-        double u[3], v[3], w[3], n[3];
-        smooth_between(a, b, u);
-        smooth_between(a, c, v);
-        smooth_between(b, c, w);
-        smooth_cross(u, v, n);
-        sum.volume += smooth_dot(a, n) / 6;
-        sum.area += sqrt(smooth_dot(n, n)) / 2;
-        sum.sides += sqrt(smooth_dot(u, u)) + sqrt(smooth_dot(v, v)) + sqrt(smooth_dot(w, w));
+    for (uint64_t i = 0; i < LANES; i++) {
+        const uint32_t *corner = corners + (i < count ? 3 * i : 0);
+        const double *a = positions + 3 * (size_t)corner[0], *b = i < count ? positions + 3 * (size_t)corner[1] : a,
+                     *c = i < count ? positions + 3 * (size_t)corner[2] : a;
+        for (int axis = 0; axis < 3; axis++) {
+            out->a[axis][i] = a[axis];
+            out->u[axis][i] = b[axis] - a[axis];
+            out->v[axis][i] = c[axis] - a[axis];
+        }
     }
-    return sum;
+}
+
+static HEWN_INTO_CLONES void add_lanes(triangle_lanes *lanes)
+{
+    for (int i = 0; i < LANES; i++) {
+        const double a[3] = {lanes->a[0][i], lanes->a[1][i], lanes->a[2][i]};
+        const double u[3] = {lanes->u[0][i], lanes->u[1][i], lanes->u[2][i]};
+        const double v[3] = {lanes->v[0][i], lanes->v[1][i], lanes->v[2][i]};
+        double w[3], n[3];
+        smooth_between(u, v, w);
+        smooth_cross(u, v, n);
+        lanes->volume[i] += smooth_dot(a, n);
+        lanes->area[i] += sqrt(smooth_dot(n, n));
+        lanes->sides[i] += sqrt(smooth_dot(u, u)) + sqrt(smooth_dot(v, v)) + sqrt(smooth_dot(w, w));
+    }
+}
+
+HEWN_CLONES static void measure_block(const smooth_work *work, const double *positions, uint64_t begin, uint64_t end,
+                                      measures *out)
+{
+    triangle_lanes lanes = {0};
+    for (uint64_t t = begin; t < end; t += LANES) {
+        gather(work->cut.corners + 3 * t, end - t, positions, &lanes);
+        add_lanes(&lanes);
+    }
+    *out = (measures){0, 0, 0};
+    for (int i = 0; i < LANES; i++) {
+        out->volume += lanes.volume[i] / 6;
+        out->area += lanes.area[i] / 2;
+        out->sides += lanes.sides[i];
+    }
 }
 
 static measures measure(const smooth_work *work, const double *positions)
@@ -176,8 +215,8 @@ static measures measure(const smooth_work *work, const double *positions)
     uint64_t count = work->cut.face_count;
 #pragma omp parallel for schedule(static)
     for (uint32_t block = 0; block < SMOOTH_BLOCKS; block++)
-        all[block] = measure_block(work, positions, smooth_block_begin(count, SMOOTH_BLOCKS, block),
-                                   smooth_block_begin(count, SMOOTH_BLOCKS, block + 1));
+        measure_block(work, positions, smooth_block_begin(count, SMOOTH_BLOCKS, block),
+                      smooth_block_begin(count, SMOOTH_BLOCKS, block + 1), all + block);
     for (uint32_t block = 1; block < SMOOTH_BLOCKS; block++) {
         all[0].volume += all[block].volume;
         all[0].area += all[block].area;
@@ -192,6 +231,7 @@ static void release(smooth_work *work)
 {
     hewn_smooth_rows_free(&work->neighbours);
     hewn_smooth_rows_free(&work->fans);
+    hewn_smooth_sides_free(&work->sides);
     hewn_free(work->cut_corners);
     hewn_free(work->flags);
     hewn_free(work->freedom);
@@ -213,20 +253,46 @@ static hewn_result cut_faces(smooth_work *work, hewn_error *error)
     return HEWN_OK;
 }
 
+static hewn_result find_neighbours(smooth_work *work, hewn_error *error)
+{
+    HEWN_TRY(hewn_smooth_sides_find(work->polygons, &work->sides, error));
+    HEWN_TRY(hewn_smooth_neighbours(&work->sides, &work->neighbours, work->flags, error));
+    if (!work->weighs || !work->polygons->first)
+        return HEWN_OK;
+    hewn_smooth_sides_free(&work->sides);
+    return hewn_smooth_sides_find(&work->cut, &work->sides, error);
+}
+
 static hewn_result prepare(smooth_work *work, const frame *from, hewn_error *error)
 {
     size_t count = work->count;
     work->flags = hewn_alloc_zero(count, sizeof *work->flags);
-    work->at = hewn_alloc(count, 3 * sizeof *work->at);
-    work->next = hewn_alloc(count, 3 * sizeof *work->next);
-    if (!work->flags || !work->at || !work->next)
+    work->at = hewn_alloc(3 * count + 1, sizeof *work->at);
+    if (!work->flags || !work->at)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
+    work->at[3 * count] = 0;
 #pragma omp parallel for schedule(static)
     for (size_t v = 0; v < count; v++)
         for (size_t axis = 0; axis < 3; axis++)
             work->at[3 * v + axis] = place_in(from, work->polygons->positions, v, axis);
     HEWN_TRY(cut_faces(work, error));
-    return hewn_smooth_neighbours(work->polygons, &work->neighbours, work->flags, error);
+    return find_neighbours(work, error);
+}
+
+hewn_result hewn_smooth_take_room(smooth_work *work, hewn_error *error)
+{
+    const size_t numbers = 3 * (size_t)work->count + 1, words = 2 * (size_t)work->sides.first[work->count];
+    if (words * sizeof(uint32_t) >= numbers * sizeof *work->next) {
+        work->next = (double *)(void *)work->sides.items;
+        work->sides.items = NULL;
+    } else {
+        work->next = hewn_alloc(numbers, sizeof *work->next);
+    }
+    hewn_smooth_sides_free(&work->sides);
+    if (!work->next)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory smoothing %u vertices", work->count);
+    work->next[numbers - 1] = 0;
+    return HEWN_OK;
 }
 
 static hewn_result run_method(smooth_work *work, hewn_error *error)
@@ -248,19 +314,31 @@ static inline double place_out(const smooth_work *work, const frame *from, size_
     return *move == 0 ? before : from->origin[axis] + at * from->scale;
 }
 
+/* Whether no vertex can leave the range of doubles, by the largest number alone. */
+static bool all_stay(const smooth_work *work, const frame *from)
+{
+    double most = DBL_MAX / 4;
+    for (int axis = 0; axis < 3; axis++)
+        most = fmin(most, DBL_MAX / 2 - fabs(from->origin[axis]) / 2);
+    most *= from->scale > 1 ? from->inverse : 1;
+    int wrong = 0;
+#pragma omp parallel for schedule(static) reduction(| : wrong)
+    for (size_t i = 0; i < 3 * (size_t)work->count; i++)
+        wrong |= !(fabs(work->at[i]) <= most);
+    return !wrong;
+}
+
 /* The first vertex that would not stay finite, or their count. */
 static uint32_t find_lost(const smooth_work *work, const frame *from)
 {
-    uint32_t first = work->count;
-#pragma omp parallel for schedule(static) reduction(min : first)
-    for (uint32_t v = 0; v < work->count; v++) {
+    for (uint32_t v = 0; v < (all_stay(work, from) ? 0 : work->count); v++) {
         double move, wrong = 0;
         for (size_t axis = 0; axis < 3; axis++)
             wrong += 0 * place_out(work, from, v, axis, &move);
-        if (wrong != 0 && first > v)
-            first = v;
+        if (wrong != 0)
+            return v;
     }
-    return first;
+    return work->count;
 }
 
 typedef struct moves {
@@ -343,7 +421,7 @@ static hewn_result run(smooth_work *work, hewn_smooth_desc *desc, bool reported,
         found = measure(work, work->at);
     report_measures(&found, &from, &report->volume_before, &report->area_before);
     settle_lengths(work, desc, &from, &found);
-    if (flows || desc->method == HEWN_SMOOTH_BILATERAL)
+    if (desc->method == HEWN_SMOOTH_IMPLICIT || desc->method == HEWN_SMOOTH_BILATERAL)
         HEWN_TRY(hewn_smooth_corners(&work->cut, &work->fans, error));
     HEWN_TRY(hewn_smooth_lock(work, error));
     if (!flows || desc->step > 0)
@@ -367,6 +445,7 @@ hewn_result hewn_polygons_smooth(const hewn_polygons *polygons, const hewn_smoot
     HEWN_TRY(check_polygons(polygons, settled.freedom, error));
     smooth_work work = {
         .polygons = polygons, .desc = &settled, .report = &done, .count = (uint32_t)polygons->vertex_count};
+    work.weighs = settled.method == HEWN_SMOOTH_COTAN;
     bool umbrella = settled.method == HEWN_SMOOTH_TAUBIN || settled.method == HEWN_SMOOTH_LAPLACIAN;
     done.iterations = settled.iterations;
     done.strength = umbrella ? settled.strength : 0;
@@ -381,12 +460,11 @@ hewn_result hewn_polygons_smooth(const hewn_polygons *polygons, const hewn_smoot
 
 /* --- curvature ---------------------------------------------------------------------------------------------------- */
 
-static void find_curvature(const smooth_work *work, const smooth_triangle *triangles, const frame *from,
-                           double *curvature, double *areas)
+static void find_curvature(const smooth_work *work, const frame *from, double *curvature, double *areas)
 {
 #pragma omp parallel for schedule(static)
     for (uint32_t v = 0; v < work->count; v++) {
-        smooth_star star = smooth_star_of(work, triangles, v);
+        smooth_star star = smooth_star_of(work->at, &work->sides, v);
         for (size_t axis = 0; curvature && axis < 3; axis++)
             curvature[3 * (size_t)v + axis] = star.area > 0 ? star.pull[axis] / star.area / from->scale : 0;
         if (areas)
@@ -398,19 +476,11 @@ hewn_result hewn_mean_curvature(const hewn_polygons *polygons, double *curvature
 {
     HEWN_TRY(check_polygons(polygons, NULL, error));
     hewn_smooth_desc desc = {0};
-    smooth_work work = {.polygons = polygons, .desc = &desc, .count = (uint32_t)polygons->vertex_count};
+    smooth_work work = {.polygons = polygons, .desc = &desc, .count = (uint32_t)polygons->vertex_count, .weighs = true};
     frame from = find_frame(polygons);
     hewn_result result = prepare(&work, &from, error);
     if (result == HEWN_OK)
-        result = hewn_smooth_corners(&work.cut, &work.fans, error);
-    smooth_triangle *triangles = hewn_alloc(work.cut.face_count, sizeof *triangles);
-    if (result == HEWN_OK && !triangles)
-        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory measuring %u vertices", work.count);
-    if (result == HEWN_OK) {
-        smooth_measure_triangles(&work, triangles);
-        find_curvature(&work, triangles, &from, curvature, areas);
-    }
-    hewn_free(triangles);
+        find_curvature(&work, &from, curvature, areas);
     release(&work);
     return result;
 }

@@ -14,11 +14,13 @@ typedef struct smooth_work {
     hewn_polygons cut; /* the triangles that faces are cut into, positions unset; corners may be those of polygons */
     uint32_t *cut_corners; /* owned; NULL where all faces are triangles */
     smooth_rows neighbours;
-    smooth_rows fans; /* triangles' corners at each vertex; only where `needs_triangles` */
-    uint8_t *flags;   /* SMOOTH_USED and SMOOTH_RIM of each vertex */
-    double *freedom;  /* of each vertex, or NULL where all are free */
-    double *at;       /* positions now */
-    double *next;     /* room for those after the step */
+    smooth_rows fans;   /* triangles' corners at each vertex (IMPLICIT, BILATERAL) */
+    bool weighs;        /* whether `sides` are those of triangles */
+    smooth_sides sides; /* of corners at each vertex, until their room is taken */
+    uint8_t *flags;     /* SMOOTH_USED and SMOOTH_RIM of each vertex */
+    double *freedom;    /* of each vertex, or NULL where all are free */
+    double *at;         /* positions now, and one number more, so that four may be read at each vertex */
+    double *next;       /* room for those after the step, the same; NULL until it is taken */
 } smooth_work;
 
 /* Each takes `at` through all iterations. HEWN_OUT_OF_MEMORY, HEWN_CANCELLED. */
@@ -27,6 +29,10 @@ hewn_result hewn_smooth_hc(smooth_work *work, hewn_error *error);
 hewn_result hewn_smooth_flow(smooth_work *work, hewn_error *error); /* COTAN */
 hewn_result hewn_smooth_implicit(smooth_work *work, hewn_error *error);
 hewn_result hewn_smooth_bilateral(smooth_work *work, hewn_error *error);
+
+/* Makes room for `next`, that of the sides where it will do: pages that the kernel need not clear once more. The sides
+ * are gone then. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_smooth_take_room(smooth_work *work, hewn_error *error);
 
 /* Fills in `freedom` from what is locked. */
 hewn_result hewn_smooth_lock(smooth_work *work, hewn_error *error);

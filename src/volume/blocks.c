@@ -79,7 +79,8 @@ static hewn_result find_entry(hewn_blocks_plan *plan, const uint32_t at[3], uint
     return HEWN_OK;
 }
 
-/* The place of a cube; false where no sample of the volume is in it. */
+/* The place of a cube at a multiple of its side; false where no sample of the volume is in it. The first place is such
+ * a multiple too, and there are samples from the place 1 on, so what has some of them begins at no place before 0. */
 static bool find_place(const hewn_blocks_plan *plan, const int32_t origin[3], uint32_t side, uint32_t at[3])
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -89,6 +90,26 @@ static bool find_place(const hewn_blocks_plan *plan, const int32_t origin[3], ui
         at[axis] = (uint32_t)begin;
     }
     return true;
+}
+
+/* Everything above, and all that reads blocks, counts on this. */
+static hewn_result check_origin(const int32_t origin[3], uint32_t side, hewn_error *error)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (origin[axis] % (int32_t)side != 0)
+            return hewn_fail(error, HEWN_BAD_INPUT,
+                             "a cube of %u samples begins at (%d, %d, %d), not at multiples of %u", side, origin[0],
+                             origin[1], origin[2], side);
+    return HEWN_OK;
+}
+
+/* What a table or a block stands for cannot be had twice: one of the two would be there and never be found. */
+static hewn_result check_free(uint32_t entry, const int32_t origin[3], uint32_t side, hewn_error *error)
+{
+    if (hewn_entry_leads_on(entry))
+        return hewn_fail(error, HEWN_BAD_INPUT, "there are two cubes of %u samples at (%d, %d, %d)", side, origin[0],
+                         origin[1], origin[2]);
+    return HEWN_OK;
 }
 
 /* --- making ------------------------------------------------------------------------------------------------------- */
@@ -118,10 +139,12 @@ hewn_result hewn_blocks_add_constant(hewn_blocks_plan *plan, const int32_t origi
                                      hewn_error *error)
 {
     uint32_t at[3], *entry, number;
+    HEWN_TRY(check_origin(origin, side, error));
     if (!find_place(plan, origin, side, at))
         return HEWN_OK;
     HEWN_TRY(add_constant(plan, sample, &number, error));
     HEWN_TRY(find_entry(plan, at, side, &entry, error));
+    HEWN_TRY(check_free(*entry, origin, side, error));
     *entry = number << 1;
     return HEWN_OK;
 }
@@ -130,10 +153,12 @@ hewn_result hewn_blocks_add_block(hewn_blocks_plan *plan, const int32_t origin[3
 {
     uint32_t at[3], *entry;
     uint64_t *count = &plan->head.block_count;
-    *added = find_place(plan, origin, HEWN_BLOCK, at);
-    if (!*added)
+    *added = false;
+    HEWN_TRY(check_origin(origin, HEWN_BLOCK, error));
+    if (!find_place(plan, origin, HEWN_BLOCK, at))
         return HEWN_OK;
     HEWN_TRY(find_entry(plan, at, HEWN_BLOCK, &entry, error));
+    HEWN_TRY(check_free(*entry, origin, HEWN_BLOCK, error));
     if (*count >= UINT32_MAX / 2 || hewn_reserve((void **)&plan->places, &plan->place_room, (size_t)*count + 1,
                                                  3 * sizeof *plan->places, NULL) != HEWN_OK)
         return no_memory(error);
@@ -141,6 +166,7 @@ hewn_result hewn_blocks_add_block(hewn_blocks_plan *plan, const int32_t origin[3
         plan->places[3 * *count + (uint64_t)axis] = at[axis] / HEWN_BLOCK;
     *entry = (uint32_t)*count << 1 | 1;
     (*count)++;
+    *added = true;
     return HEWN_OK;
 }
 

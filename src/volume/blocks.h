@@ -109,12 +109,13 @@ hewn_result hewn_blocks_begin(const hewn_volume *volume, const int32_t origin[3]
                               hewn_blocks_plan *out, hewn_error *error);
 
 /* A cube of 8, 128 or 4096 samples at a multiple of that is constant. Larger cubes come before what is within them.
- * What is not in the volume is passed over. HEWN_OUT_OF_MEMORY. */
+ * What is not in the volume is passed over. HEWN_BAD_INPUT where it does not begin at such a multiple, or something is
+ * within it already; HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_blocks_add_constant(hewn_blocks_plan *plan, const int32_t origin[3], uint32_t side, const void *sample,
                                      hewn_error *error);
 
 /* There is a block at a multiple of 8; its number is how many came before it. `*added`: it is in the volume.
- * HEWN_OUT_OF_MEMORY. */
+ * HEWN_BAD_INPUT where it does not begin at such a multiple, or there is one already; HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_blocks_add_block(hewn_blocks_plan *plan, const int32_t origin[3], bool *added, hewn_error *error);
 
 /* Whether a block at a multiple of 8 has samples of the volume. */

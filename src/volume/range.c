@@ -8,8 +8,8 @@
 hewn_volume_range hewn_volume_find_range(const hewn_volume *volume, uint64_t frame)
 {
     double lo = INFINITY, hi = -INFINITY;
-    uint64_t finite = 0, nan = 0, stretches = hewn_volume_stretches(volume), size = hewn_volume_frame_size(volume);
-#pragma omp parallel for schedule(static) reduction(min : lo) reduction(max : hi) reduction(+ : finite, nan) if (stretches >= HEWN_VOXEL_ALONE)
+    uint64_t finite = 0, nan = 0, infinite = 0, stretches = hewn_volume_stretches(volume);
+#pragma omp parallel for schedule(static) reduction(min : lo) reduction(max : hi) reduction(+ : finite, nan, infinite) if (stretches >= HEWN_VOXEL_ALONE)
     for (uint64_t index = 0; index < stretches; index++) {
         double samples[HEWN_VOXEL_STRETCH];
         uint64_t weight, finite_here = 0, nan_here = 0;
@@ -24,8 +24,9 @@ hewn_volume_range hewn_volume_find_range(const hewn_volume *volume, uint64_t fra
         }
         finite += weight * finite_here;
         nan += weight * nan_here;
+        infinite += weight * (count - finite_here - nan_here);
     }
-    hewn_volume_range range = {.finite_count = finite, .nan_count = nan, .infinite_count = size - finite - nan};
+    hewn_volume_range range = {.finite_count = finite, .nan_count = nan, .infinite_count = infinite};
     range.sample_lo = finite > 0 ? lo : NAN;
     range.sample_hi = finite > 0 ? hi : NAN;
     double a = volume->slope * range.sample_lo + volume->intercept;

@@ -251,7 +251,7 @@ static void test_rays(void **state)
     (void)state;
     char *folder = run_folder_create();
     run_write_file(run_path(folder, "ball.lua"), BALL);
-    run_write_file(run_path(folder, "r.txt"), "-3 0 0 2 0 0\n-3 5 0 1 0 0\n");
+    run_write_file(run_path(folder, "r.txt"), "-3 0 0 2e200 0 0\n-3 5 0 1e-200 0 0\n");
     run_result result = RUN(0, folder, "query", "ball.lua", "--rays", "r.txt", "--radius", "0.5");
     double low, high;
     assert_int_equal(sscanf(result.out, "# state sure low high x y z nx ny nz\noutside sure %lf %lf", &low, &high), 2);
@@ -327,13 +327,7 @@ static void test_refusals(void **state)
         assert_non_null(strstr(result.err, "--help"));
         run_result_destroy(&result);
     }
-    run_result result = RUN(1, folder, "eval", "ball.lua", "--points", "missing.txt");
-    assert_non_null(strstr(result.err, "missing.txt: "));
-    run_result_destroy(&result);
-    result = RUN(1, folder, "eval", "ball.lua", "--points", ".");
-    assert_non_null(strstr(result.err, "folder"));
-    run_result_destroy(&result);
-    result = RUN(3, folder, "query", "half.lua", "--nearest", "p.txt");
+    run_result result = RUN(3, folder, "query", "half.lua", "--nearest", "p.txt");
     assert_non_null(strstr(result.err, "--bounds"));
     run_result_destroy(&result);
     result = RUN(3, folder, "eval", "half.lua", "--grid", "4x4");
@@ -342,13 +336,88 @@ static void test_refusals(void **state)
     run_folder_destroy(folder);
 }
 
+/* An input that cannot be read is a bad input, whichever it is. */
+static void test_inputs_that_cannot_be_read(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    run_write_file(run_path(folder, "ball.lua"), BALL);
+    run_write_file(run_path(folder, "p.txt"), "0 0 0\n");
+    static const char *const cases[][8] = {{"eval", "ball.lua", "--points", "missing.txt"},
+                                           {"eval", "missing.lua", "--at", "0,0,0"},
+                                           {"query", "ball.lua", "--nearest", "missing.txt"},
+                                           {"query", "missing.lua", "--nearest", "p.txt"},
+                                           {"query", "ball.lua", "--clearance", "missing.lua"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        run_result result = eval_in(3, folder, cases[i]);
+        assert_non_null(strstr(result.err, "hewn: missing."));
+        assert_non_null(strstr(result.err, "cannot open: No such file"));
+        run_result_destroy(&result);
+    }
+    run_result result = RUN(3, folder, "eval", "ball.lua", "--points", ".");
+    assert_non_null(strstr(result.err, "folder"));
+    run_result_destroy(&result);
+    run_folder_destroy(folder);
+}
+
+/* Outputs that cannot be written are refused before the scene is run: this one would loop for ever. */
+static void test_outputs_are_checked_first(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    run_write_file(run_path(folder, "s.lua"), "while true do end");
+    run_write_file(run_path(folder, "p.txt"), "0 0 0\n");
+    static const char *const cases[][10] = {
+        {"eval", "s.lua", "--grid", "4x4", "-o", "missing/x.txt"},
+        {"eval", "s.lua", "--grid", "4x4", "-o", "x.txt", "--report", "missing/r.json"},
+        {"query", "s.lua", "--nearest", "p.txt", "-o", "missing/x.txt"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        run_result result = eval_in(1, folder, cases[i]);
+        assert_non_null(strstr(result.err, "hewn: missing/"));
+        run_result_destroy(&result);
+        assert_int_equal(run_folder_count(folder), 2);
+    }
+    run_result result = RUN(2, folder, "eval", "s.lua", "--grid", "4x4", "-o", "x", "--report", "x");
+    assert_non_null(strstr(result.err, "cannot both go to x"));
+    run_result_destroy(&result);
+    run_folder_destroy(folder);
+}
+
+/* Long numbers are numbers; of what is none a message shows the beginning. */
+static void test_long_numbers(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    run_write_file(run_path(folder, "x.lua"), "return x\n");
+    run_write_file(run_path(folder, "p.txt"),
+                   "0.100000000000000000000000000000000000000000000000000000000000000001 0 0\n"
+                   "0000000000000000000000000000000000000000000000000000000000000000000003.5,0,0\n");
+    run_result result = RUN(0, folder, "eval", "x.lua", "--points", "p.txt");
+    assert_string_equal(result.out, "0.1\n3.5\n");
+    run_result_destroy(&result);
+    run_write_file(run_path(folder, "p.txt"), "1 2 3\n1234567890123456789012345678901234567890123456789012345x 0 0\n");
+    result = RUN(3, folder, "eval", "x.lua", "--points", "p.txt");
+    assert_non_null(strstr(result.err, "p.txt:2: '123456789012345678901234567890123456789012345678...' is not a"));
+    run_result_destroy(&result);
+    run_folder_destroy(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_points),   cmocka_unit_test(test_bad_lines), cmocka_unit_test(test_many_points),
-        cmocka_unit_test(test_grids),    cmocka_unit_test(test_share),     cmocka_unit_test(test_nearest),
-        cmocka_unit_test(test_device),   cmocka_unit_test(test_rays),      cmocka_unit_test(test_clearance),
+        cmocka_unit_test(test_points),
+        cmocka_unit_test(test_bad_lines),
+        cmocka_unit_test(test_many_points),
+        cmocka_unit_test(test_grids),
+        cmocka_unit_test(test_share),
+        cmocka_unit_test(test_nearest),
+        cmocka_unit_test(test_device),
+        cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_clearance),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_inputs_that_cannot_be_read),
+        cmocka_unit_test(test_outputs_are_checked_first),
+        cmocka_unit_test(test_long_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

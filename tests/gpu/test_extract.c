@@ -379,6 +379,44 @@ static void test_caps_lie_on_grown_bounds(void **state)
     free_subject(&made);
 }
 
+/* Around the length from which the numbers of bricks no longer fit the short form of a vertex's record: a plane along
+ * each axis has a vertex at every sample of it, and nowhere else. */
+static void test_long_grids(void **state)
+{
+    (void)state;
+    static const hewn_method methods[] = {HEWN_METHOD_MARCHING_CUBES, HEWN_METHOD_MC33};
+    hewn_error error = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        hewn_field *field;
+        hewn_extractor *extractor;
+        must(hewn_field_create(&field, &error), &error);
+        hewn_node root = hewn_plane(field, axis == 1, axis == 2, axis == 0, 1.75);
+        must(hewn_extractor_create(device, field, root, &extractor, &error), &error);
+        for (uint32_t variant = 0; variant < 12; variant++) {
+            const uint32_t length = 1023 + variant / 4;
+            hewn_extract_desc desc = {
+                .bounds = {{0, 0, 0}, {4, 4, 4}}, .cell = 1, .open = variant & 1, .method = methods[variant / 2 % 2]};
+            hewn_triangles mesh;
+            uint32_t counts[1026] = {0};
+            desc.bounds.hi[axis] = length;
+            must(hewn_extract(extractor, &desc, &mesh, NULL, &error), &error);
+            for (uint64_t v = 0; v < mesh.vertex_count; v++) {
+                const double at = (double)mesh.positions[3 * v + (size_t)axis];
+                assert_true(at >= 0 && at <= length);
+                counts[(uint32_t)(at + 0.5)]++;
+            }
+            for (uint32_t n = 0; n <= length; n++)
+                if (desc.open ? counts[n] != 5 : counts[n] == 0)
+                    fail_msg("%u vertices at %u of %u, axis %d, variant %u", counts[n], n, length, axis, variant);
+            if (desc.open)
+                assert_int_equal(mesh.triangle_count, 8 * length);
+            hewn_triangles_destroy(&mesh);
+        }
+        hewn_extractor_destroy(&extractor);
+        hewn_field_destroy(&field);
+    }
+}
+
 static void test_same_bytes_every_time(void **state)
 {
     (void)state;
@@ -516,6 +554,7 @@ int main(void)
         cmocka_unit_test(test_normals_are_gradients),
         cmocka_unit_test(test_volume_converges_by_the_square),
         cmocka_unit_test(test_caps_lie_on_grown_bounds),
+        cmocka_unit_test(test_long_grids),
         cmocka_unit_test(test_same_bytes_every_time),
         cmocka_unit_test(test_refusals_say_why),
         cmocka_unit_test(test_far_out),

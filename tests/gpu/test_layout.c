@@ -236,7 +236,8 @@ static void test_rays_and_questions(void **state)
              MEMBER(hewn_query_push, answers, ADDRESS), MEMBER(hewn_query_push, lo[0], REAL),
              MEMBER(hewn_query_push, hi[2], REAL), MEMBER(hewn_query_push, tolerance, REAL),
              MEMBER(hewn_query_push, fine, REAL), MEMBER(hewn_query_push, steepness, REAL),
-             MEMBER(hewn_query_push, wide_steepness, REAL), MEMBER(hewn_query_push, count, NUMBER),
+             MEMBER(hewn_query_push, wide_steepness, REAL), MEMBER(hewn_query_push, wide_lo[0], REAL),
+             MEMBER(hewn_query_push, wide_hi[2], REAL), MEMBER(hewn_query_push, count, NUMBER),
              MEMBER(hewn_query_push, levels, NUMBER), MEMBER(hewn_query_push, most_steps, NUMBER));
 }
 

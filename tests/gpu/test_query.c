@@ -176,14 +176,56 @@ static void test_without_slopes(void **state)
     check_field(make_waves_in_ball, 1);
 }
 
-/* What the device cannot finish in the steps that it has is finished by the host: the middle of a ball without slope.
- */
 static hewn_node squares(hewn_field *field)
 {
     hewn_node sum = hewn_add(field, hewn_square(field, hewn_x(field)), hewn_square(field, hewn_y(field)));
     return hewn_sub(field, hewn_add(field, sum, hewn_square(field, hewn_z(field))), hewn_constant(field, 0.81));
 }
 
+/* Far from the box slopes are not bounded, and what is known of them near it proves nothing. */
+static void test_far_points(void **state)
+{
+    (void)state;
+    enum { FAR = 32 };
+    hewn_field *field;
+    hewn_query *query;
+    hewn_answer answers[FAR], met[FAR];
+    hewn_ray_desc rays[FAR];
+    double points[FAR][3], expected[FAR];
+    const double diagonal = apart(box.lo, box.hi), away[4] = {20, 60, 1000, 25000};
+    const hewn_query_desc desc = {.tolerance = TOLERANCE, .most_boxes = 2000};
+    for (int i = 0; i < FAR; i++) {
+        random_direction(points[i]);
+        for (int axis = 0; axis < 3; axis++) {
+            points[i][axis] *= away[i % 4] * diagonal;
+            rays[i].along[axis] = -points[i][axis];
+            rays[i].from[axis] = points[i][axis];
+        }
+        rays[i].begin = rays[i].end = rays[i].radius = 0;
+        expected[i] = away[i % 4] * diagonal - 0.9;
+    }
+    assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+    hewn_node root = squares(field);
+    for (int host = 0; host < 2; host++) {
+        GPU_TEST_TRY(hewn_query_create(host ? NULL : device, field, root, &box, &query, &error));
+        GPU_TEST_TRY(hewn_query_nearest(query, points[0], FAR, &desc, answers, &error));
+        GPU_TEST_TRY(hewn_query_rays(query, rays, FAR, &desc, met, &error));
+        for (int i = 0; i < FAR; i++) {
+            const hewn_answer *both[2] = {&answers[i], &met[i]};
+            double doubt = 1e-6 * expected[i]; /* single precision, so far out */
+            for (int k = 0; k < 2; k++)
+                if (!both[k]->found || both[k]->low > expected[i] + doubt || both[k]->high < expected[i] - doubt ||
+                    both[k]->high > expected[i] + 10 * doubt + TOLERANCE)
+                    fail_msg("%s, %s %d: %.9g to %.9g instead of %.9g", host ? "host" : "device", k ? "ray" : "point",
+                             i, both[k]->low, both[k]->high, expected[i]);
+        }
+        hewn_query_destroy(&query);
+    }
+    hewn_field_destroy(&field);
+}
+
+/* What the device cannot finish in the steps that it has is finished by the host: the middle of a ball without slope.
+ */
 static void test_many_alike(void **state)
 {
     (void)state;
@@ -200,6 +242,124 @@ static void test_many_alike(void **state)
     assert_true(answers[1].complete && answers[1].low <= 0.6 && fabs(answers[1].high - 0.6) < 0.02);
     hewn_query_destroy(&query);
     hewn_field_destroy(&field);
+}
+
+typedef struct watch {
+    int calls, most;
+    double fraction;
+} watch;
+
+static bool watch_progress(void *user, const char *stage, double fraction)
+{
+    watch *own = user;
+    assert_string_equal(stage, "query");
+    assert_true(fraction >= own->fraction && fraction < 1);
+    own->fraction = fraction;
+    return ++own->calls <= own->most;
+}
+
+/* That takes long: the caller hears of it, may stop it, and gets what the host would have answered. */
+static void test_many_left_to_the_host(void **state)
+{
+    (void)state;
+    enum { QUESTIONS = 60 };
+    double points[QUESTIONS][3] = {{0}};
+    hewn_answer answers[2][QUESTIONS];
+    hewn_field *field;
+    assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+    hewn_node root = squares(field);
+    for (int i = 0; i < QUESTIONS; i++)
+        points[i][0] = 1e-4 * uniform();
+    for (int host = 0; host < 2; host++) {
+        watch seen = {.most = 1000};
+        const hewn_progress progress = {watch_progress, &seen};
+        const hewn_query_desc desc = {.tolerance = 1e-4, .most_boxes = 1000, .progress = &progress};
+        hewn_query *query;
+        GPU_TEST_TRY(hewn_query_create(host ? NULL : device, field, root, &box, &query, &error));
+        GPU_TEST_TRY(hewn_query_nearest(query, points[0], QUESTIONS, &desc, answers[host], &error));
+        assert_true(host || seen.calls >= 3);
+        if (!host) {
+            seen = (watch){.most = 2};
+            assert_int_equal(hewn_query_nearest(query, points[0], QUESTIONS, &desc, answers[host], NULL),
+                             HEWN_CANCELLED);
+            assert_int_equal(seen.calls, 3);
+            assert_false(answers[host][0].found);
+            seen = (watch){.most = 1000};
+            GPU_TEST_TRY(hewn_query_nearest(query, points[0], QUESTIONS, &desc, answers[host], &error));
+        }
+        hewn_query_destroy(&query);
+    }
+    for (int i = 0; i < QUESTIONS; i++) {
+        const hewn_answer *a = &answers[0][i], *b = &answers[1][i];
+        assert_true(a->found && a->inside && !a->complete);
+        assert_true(a->low == b->low && a->high == b->high);
+        assert_memory_equal(a->point, b->point, sizeof a->point);
+        assert_memory_equal(a->normal, b->normal, sizeof a->normal);
+    }
+    hewn_field_destroy(&field);
+}
+
+/* Two specks, the nearer one too small to be met by chance: values around them are flat, so that places are found only
+ * from near by, and prove little. */
+static hewn_node specks(hewn_field *field, double at[2][3], const double size[2])
+{
+    hewn_node all = hewn_constant(field, 0.5), axes[3] = {hewn_x(field), hewn_y(field), hewn_z(field)};
+    for (int i = 0; i < 2; i++) {
+        hewn_node sum = hewn_constant(field, 0);
+        for (int axis = 0; axis < 3; axis++)
+            sum = hewn_add(field, sum,
+                           hewn_square(field, hewn_sub(field, axes[axis], hewn_constant(field, at[i][axis]))));
+        all = hewn_sub(field, all, hewn_exp(field, scaled(field, sum, -1 / (size[i] * size[i]))));
+    }
+    return all;
+}
+
+static void check_specks(double at[2][3], const double size[2], bool nearest, double radius)
+{
+    const double from[3] = {1.2, 1.1, 1.25};
+    const hewn_query_desc desc = {.tolerance = 0.6};
+    hewn_ray_desc ray = {.radius = radius};
+    hewn_field *field;
+    hewn_query *query;
+    hewn_answer answer;
+    for (int axis = 0; axis < 3; axis++) {
+        ray.from[axis] = from[axis];
+        ray.along[axis] = at[0][axis] - from[axis];
+    }
+    assert_int_equal(hewn_field_create(&field, NULL), HEWN_OK);
+    hewn_node root = specks(field, at, size);
+    GPU_TEST_TRY(hewn_query_create(device, field, root, &box, &query, &error));
+    if (nearest)
+        GPU_TEST_TRY(hewn_query_nearest(query, from, 1, &desc, &answer, &error));
+    else
+        GPU_TEST_TRY(hewn_query_rays(query, &ray, 1, &desc, &answer, &error));
+    double inside = apart(from, at[0]) - radius;
+    if (!(answer.low < inside) || (answer.found && answer.high - answer.low > 0.61))
+        fail_msg("%s from %g to %g, but %g is inside",
+                 nearest      ? "point"
+                 : radius > 0 ? "ball"
+                              : "ray",
+                 answer.low, answer.high, inside);
+    hewn_query_destroy(&query);
+    hewn_field_destroy(&field);
+}
+
+/* What is found in a box as small as the tolerance allows does not deny what is nearer there. Such a box in the corner
+ * that is looked at last. */
+static void test_low_is_proven_in_the_smallest_boxes(void **state)
+{
+    (void)state;
+    const double cell = 2.6 / 32, wide[2] = {0.002, 0.022}, narrow[2] = {0.001, 0.007};
+    for (int i = 0; i < 8; i++) {
+        double at[2][3];
+        for (int axis = 0; axis < 3; axis++) {
+            at[1][axis] = -1.3 + 0.5 * cell + 0.012 * uniform();
+            at[0][axis] = at[1][axis] + 0.019;
+        }
+        check_specks(at, narrow, false, 0);
+        check_specks(at, wide, false, 0.05);
+        check_specks(at, wide, true, 0);
+    }
 }
 
 /* Large fields are for the host, also where there is a device. */
@@ -229,9 +389,9 @@ static void test_large_fields(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_trees),
-        cmocka_unit_test(test_without_slopes),
-        cmocka_unit_test(test_many_alike),
+        cmocka_unit_test(test_trees),        cmocka_unit_test(test_without_slopes),
+        cmocka_unit_test(test_far_points),   cmocka_unit_test(test_low_is_proven_in_the_smallest_boxes),
+        cmocka_unit_test(test_many_alike),   cmocka_unit_test(test_many_left_to_the_host),
         cmocka_unit_test(test_large_fields),
     };
     return cmocka_run_group_tests(tests, open_device, close_device);

@@ -172,6 +172,31 @@ static void check_places(const hewn_atlas *atlas)
     }
 }
 
+/* Repeats, any number of them, change nothing. */
+static void repeats(void **state)
+{
+    (void)state;
+    enum { MANY = 100000 };
+    static uint32_t characters[MANY];
+    hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
+    for (uint32_t i = 0; i < MANY; i++)
+        characters[i] = i % 7 == 3 ? 0x4E00 : 'g' - i % 7;
+    hewn_atlas_desc desc = {.characters = characters, .character_count = 7, .size = 12};
+    hewn_atlas atlases[2];
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(hewn_atlas_create(serif, &desc, &atlases[k], NULL), HEWN_OK);
+        assert_true(atlases[k].glyph_count == 6 && atlases[k].missing_count == 1);
+        assert_true(atlases[k].glyphs[0].character == 'a' && atlases[k].glyphs[5].character == 'g');
+        desc.character_count = MANY;
+    }
+    assert_int_equal(atlases[0].width, atlases[1].width);
+    assert_memory_equal(atlases[0].texels, atlases[1].texels,
+                        (size_t)atlases[0].width * atlases[0].height * atlases[0].channels);
+    hewn_atlas_destroy(&atlases[0]);
+    hewn_atlas_destroy(&atlases[1]);
+    hewn_font_destroy(&serif);
+}
+
 static void places(void **state)
 {
     (void)state;
@@ -295,7 +320,7 @@ static void refusals(void **state)
 {
     (void)state;
     hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
-    const uint32_t foreign[] = {0x4E00, 0x6F22};
+    const uint32_t foreign[] = {0x4E00, 0x6F22}, beyond[] = {'a', 0x110000};
     const hewn_progress stop = {stop_at_atlas, NULL};
     refused(serif, (hewn_atlas_desc){.size = -1}, HEWN_INVALID_ARGUMENT, "em");
     refused(serif, (hewn_atlas_desc){.size = NAN}, HEWN_INVALID_ARGUMENT, "em");
@@ -304,6 +329,11 @@ static void refusals(void **state)
     refused(serif, (hewn_atlas_desc){.width = 10}, HEWN_INVALID_ARGUMENT, "image");
     refused(serif, (hewn_atlas_desc){.width = 20, .height = 20}, HEWN_LIMIT, "do not fit");
     refused(serif, (hewn_atlas_desc){.characters = foreign, .character_count = 2}, HEWN_BAD_INPUT, "none of the 2");
+    refused(serif, (hewn_atlas_desc){.characters = beyond, .character_count = 2}, HEWN_INVALID_ARGUMENT, "character 1");
+    refused(serif, (hewn_atlas_desc){.type = (hewn_atlas_type)4}, HEWN_INVALID_ARGUMENT, "type");
+    refused(serif, (hewn_atlas_desc){.type = (hewn_atlas_type)-1}, HEWN_INVALID_ARGUMENT, "type");
+    assert_string_equal(hewn_atlas_type_name((hewn_atlas_type)4), "unknown");
+    assert_string_equal(hewn_atlas_type_name(HEWN_ATLAS_MTSDF), "mtsdf");
     refused(serif, (hewn_atlas_desc){.progress = &stop}, HEWN_CANCELLED, "cancelled");
     refused(NULL, (hewn_atlas_desc){.size = 8}, HEWN_INVALID_ARGUMENT, "needs");
     hewn_font_destroy(&serif);
@@ -316,6 +346,7 @@ int main(void)
         cmocka_unit_test(other_fonts),
         cmocka_unit_test(overlaps_are_filled),
         cmocka_unit_test(places),
+        cmocka_unit_test(repeats),
         cmocka_unit_test(the_same_for_any_threads),
         cmocka_unit_test(metrics_and_kerning),
         cmocka_unit_test(refusals),

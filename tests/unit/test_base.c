@@ -11,6 +11,8 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json.h"
+#include "base/srgb.h"
+#include "base/utf8.h"
 #include "test_mesh_support.h"
 
 /* --- JSON
@@ -431,12 +433,73 @@ static void test_read_pipe(void **state)
 
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, enter_folder, leave_folder)
 
+/* Of three bytes all that there are, of four those that begin and end the ranges: UTF-8 is what writing a code point
+ * gives, and nothing else. */
+static size_t write_utf8(uint32_t value, unsigned char out[4])
+{
+    if (value < 0x80) {
+        out[0] = (unsigned char)value;
+        return 1;
+    }
+    size_t length = value < 0x800 ? 2 : value < 0x10000 ? 3 : 4;
+    for (size_t i = length; i-- > 1; value >>= 6)
+        out[i] = (unsigned char)(0x80 | (value & 0x3F));
+    out[0] = (unsigned char)((0xF00u >> length & 0xFFu) | value);
+    return length;
+}
+
+static void test_utf8(void **state)
+{
+    (void)state;
+    size_t found[5] = {0};
+    uint32_t value;
+    for (uint32_t bytes = 0; bytes < 1u << 24; bytes++) {
+        const unsigned char text[4] = {bytes >> 16 & 0xFF, bytes >> 8 & 0xFF, bytes & 0xFF, 0};
+        unsigned char back[4];
+        size_t length = hewn_utf8_next((const char *)text, 3, &value);
+        if (length == 0)
+            continue;
+        if (length > 3 || write_utf8(value, back) != length || memcmp(text, back, length) != 0)
+            fail_msg("%02x %02x %02x: U+%04X of %zu bytes", text[0], text[1], text[2], value, length);
+        found[length] += length == 3 || (text[2] == 0 && (length == 2 || text[1] == 0));
+    }
+    assert_true(found[1] == 0x80 && found[2] == 0x800 - 0x80 && found[3] == 0x10000 - 0x800 - 0x800);
+    for (uint32_t code = 0; code < 0x110000; code++) {
+        unsigned char text[4];
+        size_t length = write_utf8(code, text), expected = code >= 0xD800 && code < 0xE000 ? 0 : length;
+        if (hewn_utf8_next((const char *)text, 4, &value) != expected || (expected > 0 && value != code))
+            fail_msg("U+%04X", code);
+        for (size_t left = 0; left < length; left++)
+            assert_int_equal(hewn_utf8_next((const char *)text, left, &value), 0);
+    }
+    static const char *const bad[] = {"\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xF0\x90\x80",
+                                      "\xF0\x90\x80z"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(hewn_utf8_next(bad[i], SIZE_MAX, &value), 0);
+}
+
+/* The two are inverse, rise, and agree where the line meets the curve. */
+static void test_srgb(void **state)
+{
+    (void)state;
+    double before = -1;
+    for (int i = 0; i <= 10000; i++) {
+        double share = i / 10000.0, linear = hewn_srgb_to_linear(share);
+        assert_true(linear > before && fabs(hewn_srgb_from_linear(linear) - share) < 1e-6);
+        before = linear;
+    }
+    assert_true(hewn_srgb_to_linear(0) == 0 && hewn_srgb_to_linear(1) == 1);
+    assert_true(fabs(hewn_srgb_to_linear(0.5) - 0.214041) < 1e-6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_json_document),
         cmocka_unit_test(test_json_repairs_utf8),
         cmocka_unit_test(test_json_numbers_read_back),
+        cmocka_unit_test(test_utf8),
+        cmocka_unit_test(test_srgb),
         cmocka_unit_test(test_json_ignores_the_locale),
         IN_FOLDER(test_output_appears_when_finished),
         IN_FOLDER(test_output_given_up_leaves_nothing),

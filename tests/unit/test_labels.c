@@ -6,6 +6,7 @@
 #include "hewn/check.h"
 #include "hewn/labels.h"
 #include "test_model_support.h"
+#include "volume/blocks.h"
 
 static hewn_volume make_volume(uint32_t x, uint32_t y, uint32_t z, hewn_voxel type)
 {
@@ -230,6 +231,16 @@ static void test_all_cells(void **state)
     hewn_volume_destroy(&volume);
 }
 
+static void assert_same(const hewn_label_mesh *one, const hewn_label_mesh *other)
+{
+    assert_int_equal(one->vertex_count, other->vertex_count);
+    assert_int_equal(one->triangle_count, other->triangle_count);
+    assert_memory_equal(one->positions, other->positions, one->vertex_count * 3 * sizeof(double));
+    assert_memory_equal(one->indices, other->indices, one->triangle_count * 3 * sizeof(uint32_t));
+    assert_memory_equal(one->sides, other->sides, one->triangle_count * 2 * sizeof(uint16_t));
+    assert_memory_equal(one->faces, other->faces, one->triangle_count * 2 * sizeof(uint32_t));
+}
+
 /* The same bytes for any number of threads. */
 static void test_threads(void **state)
 {
@@ -242,12 +253,7 @@ static void test_threads(void **state)
         hewn_label_mesh one = mesh_labels(&volume, 4);
         omp_set_num_threads(5);
         hewn_label_mesh many = mesh_labels(&volume, 4);
-        assert_int_equal(one.vertex_count, many.vertex_count);
-        assert_int_equal(one.triangle_count, many.triangle_count);
-        assert_memory_equal(one.positions, many.positions, one.vertex_count * 3 * sizeof(double));
-        assert_memory_equal(one.indices, many.indices, one.triangle_count * 3 * sizeof(uint32_t));
-        assert_memory_equal(one.sides, many.sides, one.triangle_count * 2 * sizeof(uint16_t));
-        assert_memory_equal(one.faces, many.faces, one.triangle_count * 2 * sizeof(uint32_t));
+        assert_same(&one, &many);
         hewn_label_mesh_destroy(&one);
         hewn_label_mesh_destroy(&many);
         hewn_volume_destroy(&volume);
@@ -290,6 +296,70 @@ static void test_place(void **state)
 }
 
 /* What was asked for, from samples of any type, with slope and intercept. */
+/* The same samples in blocks: some of them, what is around them being one label. */
+static hewn_volume in_blocks(const hewn_volume *dense, uint64_t background)
+{
+    const int32_t first[3] = {-5, 4090, 122};
+    const size_t size = hewn_voxel_size(dense->type);
+    hewn_volume volume = *dense;
+    hewn_blocks_plan plan;
+    assert_int_equal(hewn_blocks_begin(dense, first, &background, &plan, NULL), HEWN_OK);
+    for (int pass = 0; pass < 2; pass++) {
+        char *to = NULL;
+        if (pass == 1) {
+            volume.memory_length = hewn_blocks_bytes(&plan);
+            volume.memory = hewn_alloc(volume.memory_length, 1);
+            assert_non_null(volume.memory);
+            to = hewn_blocks_finish(&plan, volume.memory);
+        }
+        for (int32_t n = 0; n < 5 * 5 * 5; n++) {
+            const int32_t origin[3] = {-8 + 8 * (n % 5), 4088 + 8 * (n / 5 % 5), 120 + 8 * (n / 25)};
+            bool added = n % 3 != 0 && hewn_blocks_hold(&plan, origin);
+            if (added && pass == 0)
+                assert_int_equal(hewn_blocks_add_block(&plan, origin, &added, NULL), HEWN_OK);
+            for (int32_t i = 0; i < HEWN_BLOCK_SAMPLES; i++) {
+                uint32_t at[3] = {(uint32_t)(origin[0] + i % 8 - first[0]),
+                                  (uint32_t)(origin[1] + i / 8 % 8 - first[1]),
+                                  (uint32_t)(origin[2] + i / 64 - first[2])};
+                if (at[0] >= dense->dims[0] || at[1] >= dense->dims[1] || at[2] >= dense->dims[2])
+                    continue;
+                char *sample = (char *)dense->memory +
+                               size * (at[0] + dense->dims[0] * (at[1] + (uint64_t)dense->dims[1] * at[2]));
+                if (added && pass == 1)
+                    memcpy(to + size * (size_t)i, sample, size);
+                else if (!added)
+                    memcpy(sample, &background, size);
+            }
+            to += added && pass == 1 ? size * HEWN_BLOCK_SAMPLES : 0;
+        }
+    }
+    hewn_blocks_clear(&plan);
+    volume.samples = NULL;
+    volume.blocks = volume.memory;
+    return volume;
+}
+
+static void test_blocks(void **state)
+{
+    (void)state;
+    static const hewn_voxel types[] = {HEWN_VOXEL_UINT8, HEWN_VOXEL_INT16, HEWN_VOXEL_INT32};
+    random_state random = {53};
+    for (size_t n = 0; n < sizeof types / sizeof *types; n++) {
+        hewn_volume dense = make_volume(20, 17, 22, types[n]);
+        const size_t size = hewn_voxel_size(types[n]);
+        for (size_t i = 0; i < (size_t)20 * 17 * 22; i++)
+            ((char *)dense.memory)[size * i] = (char)random_below(&random, 4);
+        hewn_volume blocks = in_blocks(&dense, n);
+        hewn_label_mesh a = mesh_labels(&dense, 2), b = mesh_labels(&blocks, 2);
+        assert_same(&a, &b);
+        assert_true(a.label_count == 3);
+        hewn_label_mesh_destroy(&a);
+        hewn_label_mesh_destroy(&b);
+        hewn_volume_destroy(&dense);
+        hewn_volume_destroy(&blocks);
+    }
+}
+
 static void test_choice(void **state)
 {
     (void)state;
@@ -582,6 +652,7 @@ int main(void)
         cmocka_unit_test(test_all_cells),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_place),
+        cmocka_unit_test(test_blocks),
         cmocka_unit_test(test_choice),
         cmocka_unit_test(test_refused),
         cmocka_unit_test(test_smooth),

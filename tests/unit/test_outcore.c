@@ -556,6 +556,29 @@ static void test_facets_are_welded(void **state)
     hewn_model_destroy(&out);
 }
 
+/* Equal positions cannot be parted: more of them than fit are refused. */
+static void test_facets_in_one_place(void **state)
+{
+    (void)state;
+    const uint64_t count = 20000;
+    hewn_model part = make_model(3 * count, count, 3 * count, false);
+    for (uint64_t c = 0; c < 3 * count; c++) {
+        part.corners[c] = (uint32_t)c;
+        part.positions[3 * c] = c < 30 ? (double)c : 1;
+    }
+    hewn_facets facets;
+    hewn_store store;
+    hewn_error refusal = {0};
+    hewn_facets_begin("-", &facets);
+    hewn_store_begin("-", USUAL, 1 << 16, &store);
+    MUST(hewn_facets_add(&facets, &part, error));
+    assert_int_equal(hewn_facets_weld(&facets, 2 << 20, &store, &refusal), HEWN_OUT_OF_MEMORY);
+    assert_non_null(strstr(refusal.message, "in one place"));
+    hewn_facets_free(&facets);
+    hewn_store_free(&store);
+    hewn_model_destroy(&part);
+}
+
 static void test_what_is_refused(void **state)
 {
     (void)state;
@@ -610,6 +633,7 @@ int main(void)
         cmocka_unit_test(test_borders_and_what_is_not_kept),
         cmocka_unit_test(test_soups),
         cmocka_unit_test(test_facets_are_welded),
+        cmocka_unit_test(test_facets_in_one_place),
         cmocka_unit_test(test_what_is_refused),
     };
     return cmocka_run_group_tests_name("outcore", tests, NULL, NULL);

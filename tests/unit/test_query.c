@@ -276,7 +276,7 @@ static hewn_clearance clearance_of(hewn_node (*one)(hewn_field *field), hewn_nod
     assert_int_equal(hewn_query_clearance(a, b, &desc, &out, NULL), HEWN_OK);
     assert_int_equal(hewn_query_clearance(b, a, &desc, &back, NULL), HEWN_OK);
     assert_true(out.found == back.found && out.overlap == back.overlap);
-    assert_true(!out.found || fabs(out.high - back.high) < 0.02);
+    assert_true(!out.found || fabs(out.high - back.high) < fmax(0.02, tolerance));
     if (out.overlap)
         assert_memory_equal(out.points[0], out.points[1], sizeof out.points[0]);
     double apart[3];
@@ -303,6 +303,44 @@ static void test_clearance(void **state)
     check_clearance(clearance_of(squared_ball, moved_log, 0.05), middles - 1.5); /* no slope is known of either */
     check_clearance(clearance_of(cube, turned_cube, 0), 0.25);
     check_clearance(clearance_of(ring, tiny, 0.05), 0.7 - 0.01); /* all of the ring is as near */
+}
+
+/* A direction's length says nothing, however large or small it is. */
+static void test_lengths_of_directions(void **state)
+{
+    (void)state;
+    hewn_query *query = query_of(cube, &box);
+    const double lengths[] = {1e-320, 1e-200, 1e-30, 1e30, 1e160, 1e308};
+    hewn_answer expected, answer;
+    hewn_ray_desc ray = {.from = {-1.7, 0.2, 0.1}, .along = {1, -0.25, 0.5}};
+    assert_int_equal(hewn_query_rays(query, &ray, 1, NULL, &expected, NULL), HEWN_OK);
+    assert_true(expected.found && fabs(expected.high - 0.7 * sqrt(1.3125)) < 1e-3);
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        ray = (hewn_ray_desc){.from = {-1.7, 0.2, 0.1}, .along = {lengths[i], -0.25 * lengths[i], 0.5 * lengths[i]}};
+        assert_int_equal(hewn_query_rays(query, &ray, 1, NULL, &answer, NULL), HEWN_OK);
+        assert_true(answer.found && fabs(answer.high - expected.high) < 1e-3);
+    }
+    hewn_query_destroy(&query);
+}
+
+static hewn_node two_balls(hewn_field *field)
+{
+    hewn_node large = hewn_translate(field, hewn_sphere(field, 0.4), 1.2, 0.1, 0);
+    return hewn_union(field, large, hewn_translate(field, hewn_sphere(field, 0.1), -0.3, 1.2, 0.2));
+}
+
+static hewn_node left_ball(hewn_field *field)
+{
+    return hewn_translate(field, hewn_sphere(field, 0.3), -1.3, 0.5, 0.2);
+}
+
+/* With a tolerance larger than the boxes the first place that is found is an answer, but `low` stays proven. */
+static void test_coarse_clearance(void **state)
+{
+    (void)state;
+    const double expected = sqrt(1 + 0.7 * 0.7) - 0.4, tolerances[] = {0.01, 0.5, 2, 20, 100};
+    for (int i = 0; i < 5; i++)
+        check_clearance(clearance_of(two_balls, left_ball, tolerances[i]), expected);
 }
 
 static hewn_node inner_ball(hewn_field *field)
@@ -339,10 +377,17 @@ static void test_refusals(void **state)
     assert_false(answers[0].found);
     const hewn_query_desc nonsense = {.tolerance = -1};
     assert_int_equal(hewn_query_nearest(query, bad, 1, &nonsense, answers, &error), HEWN_INVALID_ARGUMENT);
-    const hewn_ray_desc rays[] = {
-        {.from = {0, 0, 0}, .along = {0, 0, 0}}, {.from = {INFINITY, 0, 0}, .along = {1, 0, 0}},
-        {.along = {1, 0, 0}, .radius = -1},      {.along = {1, 0, 0}, .begin = 2, .end = 1},
-        {.along = {1, 0, 0}, .begin = -1},       {.along = {NAN, 0, 0}}};
+    const hewn_ray_desc rays[] = {{.from = {0, 0, 0}, .along = {0, 0, 0}},
+                                  {.from = {INFINITY, 0, 0}, .along = {1, 0, 0}},
+                                  {.along = {1, 0, 0}, .radius = -1},
+                                  {.along = {1, 0, 0}, .begin = 2, .end = 1},
+                                  {.along = {1, 0, 0}, .begin = -1},
+                                  {.along = {NAN, 0, 0}},
+                                  {.along = {1, NAN, 2}},
+                                  {.along = {1, INFINITY, 0}},
+                                  {.along = {1, 0, 0}, .begin = 0x1p31},
+                                  {.along = {1, 0, 0}, .radius = 0x1p31},
+                                  {.from = {0, -0x1p31, 0}, .along = {1, 0, 0}}};
     for (size_t i = 0; i < sizeof rays / sizeof *rays; i++)
         assert_int_equal(hewn_query_rays(query, &rays[i], 1, NULL, answers, &error), HEWN_INVALID_ARGUMENT);
     assert_int_equal(hewn_query_nearest(query, bad, 0, NULL, answers, &error), HEWN_OK);
@@ -388,9 +433,11 @@ static void test_cancel(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nearest),    cmocka_unit_test(test_rays),      cmocka_unit_test(test_parts_of_rays),
-        cmocka_unit_test(test_hard_cases), cmocka_unit_test(test_clearance), cmocka_unit_test(test_overlap),
-        cmocka_unit_test(test_refusals),   cmocka_unit_test(test_cancel),
+        cmocka_unit_test(test_nearest),          cmocka_unit_test(test_rays),
+        cmocka_unit_test(test_parts_of_rays),    cmocka_unit_test(test_hard_cases),
+        cmocka_unit_test(test_clearance),        cmocka_unit_test(test_lengths_of_directions),
+        cmocka_unit_test(test_coarse_clearance), cmocka_unit_test(test_overlap),
+        cmocka_unit_test(test_refusals),         cmocka_unit_test(test_cancel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

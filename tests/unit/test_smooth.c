@@ -187,6 +187,64 @@ static void test_flow_of_a_sphere(void **state)
     }
 }
 
+/* A small explicit step goes along the mean curvature vector; around few corners, many, and more than a batch holds,
+ * and where faces are cut first. */
+static void test_small_steps_follow_the_curvature(void **state)
+{
+    (void)state;
+    random_state random = {11};
+    hewn_model models[] = {model_of(make_torus(24, 10)), model_of(make_bipyramid(20)), model_of(make_bipyramid(600)),
+                           make_ring_model(18, 9, 4)};
+    for (size_t m = 0; m < sizeof models / sizeof *models; m++) {
+        hewn_model *model = models + m;
+        add_noise(model, 0.001, &random);
+        double *positions = make_positions(model), *curvature = make_positions(model), most = 0;
+        hewn_polygons polygons = hewn_model_polygons(model);
+        hewn_smooth_report report;
+        const double step = 1e-5;
+        assert_int_equal(hewn_mean_curvature(&polygons, curvature, NULL, error), HEWN_OK);
+        smooth(model, &(hewn_smooth_desc){.method = HEWN_SMOOTH_COTAN, .iterations = 1, .step = step}, positions,
+               &report);
+        assert_int_equal(report.clamped_vertices, 0);
+        for (uint64_t i = 0; i < 3 * model->vertex_count; i++)
+            most = fmax(most, fabs(curvature[i]));
+        uint64_t moved = 0;
+        for (uint64_t i = 0; i < 3 * model->vertex_count; i++) {
+            const double move = (positions[i] - model->positions[i]) * 2 / (step * step);
+            moved += fabs(move - curvature[i]) < 1e-4 * most;
+        }
+        assert_int_equal(moved, 3 * model->vertex_count);
+        hewn_free(positions);
+        hewn_free(curvature);
+        hewn_model_destroy(model);
+    }
+}
+
+/* Far along, weights that are kept make a sphere shrink as e^(-2 t), since its area stays what it was; those measured
+ * anew as its curvature grows. */
+static void test_weights_are_kept_or_not(void **state)
+{
+    (void)state;
+    const double time = 0.15, results[] = {exp(-2 * time), sqrt(1 - 4 * time)};
+    for (uint32_t i = 0; i < 4; i++) {
+        hewn_model model = make_sphere(8, 1);
+        const uint32_t again = i / 2, steps = i % 2 ? 60 : 200;
+        hewn_smooth_desc desc = {.method = i % 2 ? HEWN_SMOOTH_IMPLICIT : HEWN_SMOOTH_COTAN,
+                                 .iterations = steps,
+                                 .step = sqrt(2 * time / steps),
+                                 .remeasure = again};
+        double *positions = make_positions(&model), mean = 0;
+        smooth(&model, &desc, positions, NULL);
+        for (uint64_t v = 0; v < model.vertex_count; v++)
+            mean += sqrt(positions[3 * v] * positions[3 * v] + positions[3 * v + 1] * positions[3 * v + 1] +
+                         positions[3 * v + 2] * positions[3 * v + 2]) /
+                    (double)model.vertex_count;
+        assert_true(fabs(mean / results[again] - 1) < 0.015);
+        hewn_free(positions);
+        hewn_model_destroy(&model);
+    }
+}
+
 /* Any step is stable: nothing grows, and a huge one gathers each component at one place. */
 static void test_any_step_is_stable(void **state)
 {
@@ -535,6 +593,8 @@ int main(void)
         cmocka_unit_test(test_curvature_of_a_sphere),
         cmocka_unit_test(test_areas_sum_to_the_area),
         cmocka_unit_test(test_flow_of_a_sphere),
+        cmocka_unit_test(test_small_steps_follow_the_curvature),
+        cmocka_unit_test(test_weights_are_kept_or_not),
         cmocka_unit_test(test_any_step_is_stable),
         cmocka_unit_test(test_implicit_solves_its_equation),
         cmocka_unit_test(test_same_bytes_for_any_threads),

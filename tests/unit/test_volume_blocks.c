@@ -1,6 +1,7 @@
 /* Volumes in blocks are what they would be if all their samples lay in a row: the same samples, the same range and
  * percentiles, and the same mesh byte for byte, at once or in slabs; for random trees of blocks and constants with
  * steps between them. */
+#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -364,12 +365,121 @@ static void test_bricks_need_rows(void **state)
     clear(&of);
 }
 
+/* A background that is inside, `side` samples long, with two blocks at its ends that are not: its border passes
+ * 6 (side / 8)^2 blocks, however little the file holds. */
+static hewn_volume make_hollow(uint32_t side)
+{
+    const int32_t first[3] = {0, 0, 0};
+    const float inside = 1;
+    hewn_volume volume = {.dims = {side, side, side}, .type = HEWN_VOXEL_FLOAT, .frame_count = 1, .slope = 1};
+    hewn_blocks_plan plan;
+    for (int i = 0; i < 16; i++)
+        volume.to_world[i] = i % 5 == 0;
+    assert_int_equal(hewn_blocks_begin(&volume, first, &inside, &plan, NULL), HEWN_OK);
+    for (int32_t n = 0; n < 2; n++) {
+        const int32_t at = n * ((int32_t)side - 8) / 8 * 8, origin[3] = {at, at, at};
+        bool added;
+        assert_int_equal(hewn_blocks_add_block(&plan, origin, &added, NULL), HEWN_OK);
+        assert_true(added);
+    }
+    volume.memory_length = hewn_blocks_bytes(&plan);
+    volume.memory = aligned_alloc(64, volume.memory_length);
+    assert_non_null(volume.memory);
+    memset(hewn_blocks_finish(&plan, volume.memory), 0, 2 * sizeof(float) * HEWN_BLOCK_SAMPLES);
+    volume.blocks = volume.memory;
+    hewn_blocks_clear(&plan);
+    return volume;
+}
+
+static bool go_on_for(void *user, const char *stage, double fraction)
+{
+    int *calls = user;
+    assert_string_equal(stage, "extract");
+    assert_true(fraction == 0);
+    return (*calls)-- > 0;
+}
+
+static void assert_refused(const hewn_volume *volume, uint64_t max_memory, int calls, hewn_result code,
+                           const char *message)
+{
+    const hewn_mesh_sink sink = {.user = NULL, .take = NULL}; /* nothing gets so far */
+    const hewn_progress progress = {.report = go_on_for, .user = &calls};
+    const hewn_volume_extract_desc desc = {.iso = 0.5, .max_memory = max_memory, .progress = &progress};
+    hewn_volume_extract_stats stats;
+    hewn_error error = {0};
+    const hewn_result result = hewn_volume_extract_parts(volume, &desc, &sink, &stats, &error);
+    if (result != code || !strstr(error.message, message))
+        fail_msg("%d: %s", result, error.message);
+}
+
+/* Work is refused before it is done: at the border of what memory or numbers allow, or when nobody wants it any more.
+ */
+static void test_large_surfaces_are_refused(void **state)
+{
+    (void)state;
+    const bool all = getenv("HEWN_LONG") != NULL;
+    hewn_volume volume = make_hollow(all ? 1 << 17 : 1 << 15);
+    assert_refused(&volume, volume.memory_length + (4 << 20), INT_MAX, HEWN_OUT_OF_MEMORY,
+                   "blocks that the surface passes");
+    assert_refused(&volume, 1 << 10, INT_MAX, HEWN_OUT_OF_MEMORY, "that are allowed");
+    assert_refused(&volume, 0, 3, HEWN_CANCELLED, "extract");
+    assert_refused(&volume, (uint64_t)1 << 40, 3, HEWN_CANCELLED, "extract");
+    if (all)
+        assert_refused(&volume, 0, INT_MAX, HEWN_LIMIT, "blocks of 8 x 8 x 8");
+    free(volume.memory);
+}
+
+/* Cubes that do not begin at a multiple of their side, and second ones at one place, wherever they lie. */
+static void test_places_are_checked(void **state)
+{
+    (void)state;
+    const hewn_volume volume = {.dims = {40, 40, 40}, .type = HEWN_VOXEL_FLOAT, .frame_count = 1};
+    const float background = 1, value = 2;
+    static const uint32_t sides[3] = {HEWN_UPPER_SPAN, HEWN_LOWER_SPAN, HEWN_BLOCK};
+    static const int32_t starts[][3] = {{18, 18, 18}, {0, 0, 0}, {1, 4095, -4000}, {INT32_MIN / 2, 3, 4}};
+    uint64_t random = 5;
+    for (uint32_t n = 0; n < 4000; n++) {
+        const int32_t *first = starts[n % 4];
+        const uint32_t side = sides[n / 4 % 3];
+        hewn_blocks_plan plan;
+        hewn_error error = {0};
+        int32_t origin[3], shift = 0;
+        bool added = true;
+        assert_int_equal(hewn_blocks_begin(&volume, first, &background, &plan, NULL), HEWN_OK);
+        for (int axis = 0; axis < 3; axis++) {
+            origin[axis] = floor_to(first[axis] + (int32_t)random_below(&random, 40), (int32_t)side);
+            if (n % 2 && random_below(&random, 2)) {
+                origin[axis] += (int32_t)random_below(&random, 2 * side - 1) - (int32_t)side + 1;
+                shift |= origin[axis] % (int32_t)side;
+            }
+        }
+        const hewn_result wanted = shift ? HEWN_BAD_INPUT : HEWN_OK;
+        if (side == HEWN_BLOCK && n / 12 % 2) {
+            assert_int_equal(hewn_blocks_add_block(&plan, origin, &added, &error), wanted);
+            assert_int_equal(added, plan.head.block_count);
+            assert_true(!added || hewn_blocks_hold(&plan, origin));
+            if (added) {
+                assert_int_equal(hewn_blocks_add_block(&plan, origin, &added, &error), HEWN_BAD_INPUT);
+                assert_false(added);
+                assert_int_equal(hewn_blocks_add_constant(&plan, origin, side, &value, &error), HEWN_BAD_INPUT);
+                assert_non_null(strstr(error.message, "two cubes"));
+                assert_int_equal(plan.head.block_count, 1);
+            }
+        } else {
+            assert_int_equal(hewn_blocks_add_constant(&plan, origin, side, &value, &error), wanted);
+        }
+        if (shift)
+            assert_non_null(strstr(error.message, "multiples"));
+        hewn_blocks_clear(&plan);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_samples),
-        cmocka_unit_test(test_same_mesh),
-        cmocka_unit_test(test_bricks_need_rows),
+        cmocka_unit_test(test_same_samples),       cmocka_unit_test(test_same_mesh),
+        cmocka_unit_test(test_bricks_need_rows),   cmocka_unit_test(test_large_surfaces_are_refused),
+        cmocka_unit_test(test_places_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -143,6 +143,73 @@ static void test_random_trees(void **state)
     assert_int_equal(rmdir(folder), 0);
 }
 
+/* --- damaged files ------------------------------------------------------------------------------------------------ */
+
+/* Puts other coordinates everywhere where these are in a file. */
+static void move_places(const char *path, const int32_t from[3], const int32_t to[3])
+{
+    static char bytes[1 << 16];
+    FILE *file = fopen(path, "r+b");
+    assert_non_null(file);
+    const size_t length = fread(bytes, 1, sizeof bytes, file);
+    uint64_t count = 0;
+    assert_true(length < sizeof bytes);
+    for (size_t at = 0; at + 12 <= length; at++)
+        if (memcmp(bytes + at, from, 12) == 0) {
+            memcpy(bytes + at, to, 12);
+            count++;
+        }
+    assert_int_equal(count, 1);
+    rewind(file);
+    assert_int_equal(fwrite(bytes, 1, length, file), length);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Leaves, nodes and tiles say in the file where they are. Wherever that is not where the tree has them, the file is
+ * refused, in blocks as well as dense; nothing is written out of place. */
+static void test_misplaced(void **state)
+{
+    (void)state;
+    const int32_t active[3] = {16, 24, 32}, passive[3] = {8, 24, 40}, tile[3] = {-4096, 4096, 8192};
+    static const struct {
+        const char *what; /* NULL: as it was */
+        int32_t to[3];
+    } cases[] = {{NULL, {0}},
+                 {"leaf", {10, 24, 40}}, /* samples end before the box begins */
+                 {"leaf", {16, 24, 32}}, /* where there is another */
+                 {"leaf", {-1, 24, 40}},
+                 {"leaf", {8, 24, 40 + 8192}},
+                 {"leaf", {INT32_MAX, INT32_MIN, 7}},
+                 {"active leaf", {17, 24, 32}},
+                 {"active leaf", {8, 24, 40}},
+                 {"active leaf", {INT32_MAX - 7, INT32_MAX - 7, INT32_MAX - 7}},
+                 {"tile", {-100, 0, 0}},
+                 {"tile", {16, 24, 32}},
+                 {"tile", {INT32_MIN, INT32_MIN, -1}}};
+    char folder[64], path[96];
+    make_folder(folder);
+    snprintf(path, sizeof path, "%s/a.vdb", folder);
+    for (size_t n = 0; n < 2 * sizeof cases / sizeof *cases; n++) {
+        const char *what = cases[n / 2].what;
+        const hewn_volume_read_desc desc = {.blocks = n % 2 == 0, .memory_limit = 1 << 24};
+        hewn_volume volume;
+        hewn_error error = {0};
+        vdb_write_mask(path, active, passive, tile);
+        if (what)
+            move_places(path,
+                        strcmp(what, "tile") == 0   ? tile
+                        : strcmp(what, "leaf") == 0 ? passive
+                                                    : active,
+                        cases[n / 2].to);
+        hewn_result result = hewn_volume_read(path, &desc, &volume, &error);
+        if (result != (what ? HEWN_BAD_INPUT : HEWN_OK) || (what && !strstr(error.message, "which belongs at")))
+            fail_msg("case %zu: %d, %s", n, result, error.message);
+        hewn_volume_destroy(&volume);
+    }
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
 /* --- memory ------------------------------------------------------------------------------------------------------- */
 
 /* Their box has a thousand million million samples, which nobody can make dense. */
@@ -188,10 +255,8 @@ static void test_far_apart(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_far_apart),
-        cmocka_unit_test(test_data),
-        cmocka_unit_test(test_types),
-        cmocka_unit_test(test_random_trees),
+        cmocka_unit_test(test_far_apart),    cmocka_unit_test(test_data),      cmocka_unit_test(test_types),
+        cmocka_unit_test(test_random_trees), cmocka_unit_test(test_misplaced),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

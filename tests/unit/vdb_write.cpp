@@ -117,3 +117,21 @@ void vdb_write_tree(const char *path, uint64_t seed, bool doubles)
     file.write({doubles ? make_tree<openvdb::DoubleGrid>(seed) : make_tree<openvdb::FloatGrid>(seed)});
     file.close();
 }
+
+void vdb_write_mask(const char *path, const int32_t active[3], const int32_t passive[3], const int32_t tile[3])
+{
+    openvdb::initialize();
+    auto grid = openvdb::BoolGrid::create(false);
+    auto &tree = grid->tree();
+    for (int n = 0; n < 512; n++)
+        if ((n & 7) >= 2) {
+            tree.setValueOn(openvdb::Coord(active).offsetBy(n & 7, n >> 3 & 7, n >> 6), true);
+            tree.setValueOff(openvdb::Coord(passive).offsetBy(n & 7, n >> 3 & 7, n >> 6), true);
+        }
+    tree.addTile(3, openvdb::Coord(tile), true, false);
+    grid->setName("mask");
+    openvdb::io::File file(path);
+    file.setCompression(openvdb::io::COMPRESS_NONE);
+    file.write({grid});
+    file.close();
+}

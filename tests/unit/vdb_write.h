@@ -24,6 +24,10 @@ void vdb_write_spheres(const char *path, int count, const double centres[][3], d
  * background are random, with steps wherever they meet. Active samples lie within 300 of the origin. */
 void vdb_write_tree(const char *path, uint64_t seed, bool doubles);
 
+/* A file with the grid "mask" of bools: a leaf at a multiple of 8 whose samples are active and true from 2 on along x,
+ * one that is the same but not active, and a tile of 4096 that is true and not active. */
+void vdb_write_mask(const char *path, const int32_t active[3], const int32_t passive[3], const int32_t tile[3]);
+
 #ifdef __cplusplus
 }
 #endif
