@@ -92,12 +92,14 @@ typedef struct hewn_object {
 } hewn_object;
 
 /* Writes objects as a GLB file, each a node with a mesh, normals and a material of its colour. `numbers`, one an object
- * or NULL, go to the nodes' extras as "label". Vertices are those of the models, so that what is shared by closed
+ * or NULL, go to the nodes' extras as "label"; `space` or NULL, as in
+ * hewn_write_desc, to the asset's. Vertices are those of the models, so that what is shared by closed
  * models has the same bits. HEWN_LIMIT for more than 4 GiB or a position that a float cannot hold, before anything is
  * written; HEWN_INVALID_ARGUMENT for faces that are no triangles; HEWN_IO; HEWN_CANCELLED; HEWN_OUT_OF_MEMORY.
  * `progress` may be NULL, its stage is "write". */
 HEWN_API hewn_result hewn_objects_write_glb(const hewn_object *objects, size_t count, const int64_t *numbers,
-                                            const char *path, const hewn_progress *progress, hewn_error *error);
+                                            const char *space, const char *path, const hewn_progress *progress,
+                                            hewn_error *error);
 
 /* A progressive mesh from a file (.hpm, docs/hpm.md), compressed with gzip or not, and to one; "-" is standard input
  * and output. `partial` takes a file that ends early with what is whole of it, but for a compressed one. The errors of

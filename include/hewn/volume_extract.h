@@ -21,7 +21,7 @@ typedef enum hewn_inside {
 typedef struct hewn_volume_extract_desc {
     uint64_t frame;
     double iso;         /* a value, not a sample: see hewn_volume */
-    hewn_method method; /* HEWN_METHOD_MC33 where it is the default; or HEWN_METHOD_MARCHING_CUBES, HEWN_METHOD_NETS */
+    hewn_method method; /* HEWN_METHOD_MC33 where it is the default */
     hewn_inside inside;
     bool open;           /* leave the surface open at the outermost samples, instead of closing it there with a cap */
     bool no_normals;     /* leave them out */
@@ -54,31 +54,34 @@ typedef struct hewn_volume_extract_stats {
  * from its ends (more where floats are coarser), and by HEWN_METHOD_MC33 the mesh is connected as the interpolant's
  * surface is, by exact decisions (docs/extraction.md). Normals are the gradients of the samples by central differences.
  *
- * By HEWN_METHOD_NETS vertices lie in cells instead, each at the mean of the crossings of a loop of the surface around
- * the cell, and normals are the means of theirs; there is a quad around each crossed edge, cut along its shorter
- * diagonal. Not with `open`, nor in parts.
+ * By HEWN_METHOD_NETS and HEWN_METHOD_DC vertices lie in cells instead, one for each loop of the surface around the
+ * cell: at the mean of the crossings, or where their planes meet (docs/volumes.md tells how these are found). Normals
+ * are the means of theirs; there is a quad around each crossed edge, cut in two triangles.
  *
  * The mesh is a closed, oriented 2-manifold for any samples, in which no vertex is used by more than one sheet. A
  * surface that reaches the outermost samples is closed there by a cap, 2^-14 of an edge beyond them, or with `open` has
  * a manifold border there. Positions are in the space of `place`, faces turned over where that mirrors. The same bytes
  * for any number of threads.
  *
- * Memory beside the mesh: a bit a sample and 24 bytes a row of samples; with `keep`, 4 bytes a vertex; of nets, 24
- * bytes a crossing. Of a volume in blocks a bit a sample of these, and 1.5 kB for each block that the surface passes.
+ * Memory beside the mesh: a bit a sample and 24 bytes a row of samples; with `keep`, 4 bytes a vertex; of dual
+ * methods, 24 bytes a crossing. Of a volume in blocks a bit a sample of these, and 1.5 kB for each block that the
+ * surface passes.
  *
  * HEWN_INVALID_ARGUMENT for a frame that is not there, an iso value or least volume that is not finite, another method,
  * a place that is singular or not finite, or `keep` with `open`; HEWN_BAD_INPUT where there is no surface
- * (hewn_volume_range tells why), no body that is large enough, or where the place is so far from the origin that float
- * positions cannot tell vertices apart; HEWN_LIMIT for more vertices than indices can name, or a surface through more
- * than 2^26 blocks; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. `stats` may be NULL. Safe from several threads at once. */
+ * (hewn_volume_range tells why), a volume of one slice is to be left open, no body that is large enough, or where the
+ * place is so far from the origin that float positions cannot tell vertices apart; HEWN_LIMIT for more vertices than
+ * indices can name, or a surface through more than 2^26 blocks; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. `stats` may be
+ * NULL. Safe from several threads at once. */
 HEWN_API hewn_result hewn_volume_extract(const hewn_volume *volume, const hewn_volume_extract_desc *desc,
                                          hewn_triangles *out, hewn_volume_extract_stats *stats, hewn_error *error);
 
 /* The same mesh in parts, slabs of slices (along k): vertices and triangles of each are runs of the whole's. Two passes
  * go over the samples, counting first. A slab takes its signs (a bit a sample), 24 bytes a row, its vertices and
- * triangles, and what the sink takes; and where samples are left in a file, those of its slices, which are let go after
- * it. All that together stays within `max_memory`, and so do samples on the heap. HEWN_OUT_OF_MEMORY with what is
- * needed where a slice does not fit; else as hewn_volume_extract(), and what the sink fails with. */
+ * triangles (by dual methods also those of the slice before it), and what the sink takes; and where samples are left in
+ * a file, those of its slices, which are let go after it. All that together stays within `max_memory`, and so do
+ * samples on the heap. HEWN_OUT_OF_MEMORY with what is needed where a slice does not fit; else as
+ * hewn_volume_extract(), and what the sink fails with. */
 HEWN_API hewn_result hewn_volume_extract_parts(const hewn_volume *volume, const hewn_volume_extract_desc *desc,
                                                const hewn_mesh_sink *sink, hewn_volume_extract_stats *stats,
                                                hewn_error *error);

@@ -142,7 +142,7 @@ static hewn_result read_files(const hewn_arguments *arguments, request *out, hew
 /* What is for surfaces of values is refused, so that nobody believes it was done. */
 static hewn_result read_steps(const hewn_arguments *arguments, request *out, hewn_error *error)
 {
-    static const char *const others[] = {"smooth-volume", "method", "inside", "space", "open"};
+    static const char *const others[] = {"smooth-volume", "method", "inside", "open"};
     bool simplify;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (hewn_arguments_has(arguments, others[i]))
@@ -161,6 +161,7 @@ static hewn_result read_request(const hewn_arguments *arguments, request *out, h
 {
     const char *labels = hewn_arguments_value(arguments, "labels"), *method = hewn_arguments_value(arguments, "smooth");
     const char *passes = hewn_arguments_value(arguments, "smooth-labels");
+    const char *space = hewn_arguments_value(arguments, "space");
     hewn_label_job_desc *desc = &out->desc;
     const hewn_file_job_desc *file = &out->file.desc;
     if (!labels)
@@ -176,6 +177,11 @@ static hewn_result read_request(const hewn_arguments *arguments, request *out, h
     desc->unit = file->unit;
     desc->to_unit = file->to_unit;
     desc->to_up = file->to_up;
+    if (space && !hewn_space_find(space, &desc->space))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--space is ras, lps, gltf, world or voxel, not '%s'", space);
+    if (space && desc->to_up)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "--space says where the axes are, so it does not go with --to-up");
     desc->names = hewn_arguments_value(arguments, "names");
     desc->complex = hewn_arguments_has(arguments, "complex");
     desc->relaxations = DEFAULT_RELAXATIONS;
@@ -231,7 +237,7 @@ static void print(const hewn_label_job_desc *desc, const hewn_label_report *repo
         fprintf(stderr, "unit %s -> %s", done->unit_before->name, done->unit_after->name);
     if (report->up_known)
         fprintf(stderr, "; up %s", hewn_axis_name(done->up_after));
-    fprintf(stderr, "%s\n", report->anatomical ? "; RAS" : "");
+    fprintf(stderr, "; space %s\n", hewn_space_name(report->space));
     if (report->smoothed)
         fprintf(stderr, "  %s, vertices moved by %.4g in the mean, %.4g at most\n",
                 hewn_smooth_method_name(report->smooth_method), report->smooth.mean_move, report->smooth.largest_move);

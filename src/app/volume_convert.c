@@ -116,15 +116,9 @@ static hewn_result read_surface(const hewn_arguments *arguments, hewn_volume_job
     const char *method = hewn_arguments_value(arguments, "method"), *inside = hewn_arguments_value(arguments, "inside");
     const char *threads = hewn_arguments_value(arguments, "threads");
     const char *memory = hewn_arguments_value(arguments, "max-memory");
-    bool known = !method || hewn_method_named(method, &desc->method);
-    if (known && desc->method == HEWN_METHOD_DC)
-        return hewn_fail(
-            error, HEWN_INVALID_ARGUMENT,
-            "--method of a volume is mc33, mc or nets, not 'dc': that needs the planes of a field, and those "
-            "of samples are too blurred to meet in its edges");
-    if (!known || (method && desc->method != HEWN_METHOD_MC33 && desc->method != HEWN_METHOD_MARCHING_CUBES &&
-                   desc->method != HEWN_METHOD_NETS))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method of a volume is mc33, mc or nets, not '%s'", method);
+    if (method && !hewn_method_named(method, &desc->method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--method of a volume is mc33, mc, nets or dc, not '%s'",
+                         method);
     if (inside && strcmp(inside, "above") != 0 && strcmp(inside, "below") != 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--inside is above or below, not '%s'", inside);
     if (inside)

@@ -7,7 +7,8 @@
 #define HEWN_OPTIONS_VOLUME_MESH                                                                                       \
     {0, "method", "NAME",                                                                                              \
      "Of a volume: mc33 (connected as the trilinear interpolant of the samples is), mc (marching cubes by signs "      \
-     "alone) or nets (surface nets: vertices in cells, at the mean of the crossings). Default: mc33."},                \
+     "alone), nets (surface nets: vertices in cells, at the mean of the crossings) or dc (dual contouring: where "     \
+     "their planes meet, which keeps edges). Default: mc33."},                                                         \
         {0, "inside", "SIDE",                                                                                          \
          "What of a volume is inside: above (values from the iso value on) or below. Default: below of a level set, "  \
          "else above."},                                                                                               \

@@ -20,6 +20,7 @@ typedef struct file {
     const hewn_object *objects;
     size_t count;
     const int64_t *numbers;
+    const char *space;
     const hewn_progress *progress;
     hewn_output *output;
 } file;
@@ -204,6 +205,11 @@ static void print_document(const file *of, uint64_t bytes, hewn_text *text)
     hewn_json_object(&json, "asset");
     hewn_json_string(&json, "version", "2.0");
     hewn_json_string(&json, "generator", generator);
+    if (of->space) {
+        hewn_json_object(&json, "extras");
+        hewn_json_string(&json, "space", of->space);
+        hewn_json_end_object(&json);
+    }
     hewn_json_end_object(&json);
     hewn_json_unsigned(&json, "scene", 0);
     hewn_json_array(&json, "scenes");
@@ -334,10 +340,10 @@ static hewn_result write_all(const file *of, const hewn_text *json, uint64_t byt
     return HEWN_OK;
 }
 
-hewn_result hewn_objects_write_glb(const hewn_object *objects, size_t count, const int64_t *numbers, const char *path,
-                                   const hewn_progress *progress, hewn_error *error)
+hewn_result hewn_objects_write_glb(const hewn_object *objects, size_t count, const int64_t *numbers, const char *space,
+                                   const char *path, const hewn_progress *progress, hewn_error *error)
 {
-    file of = {objects, count, numbers, progress, NULL};
+    file of = {objects, count, numbers, space, progress, NULL};
     uint64_t bytes = 0;
     hewn_text json = {0};
     HEWN_TRY(check(&of, error));

@@ -6,9 +6,9 @@
 
 /* --- samples ------------------------------------------------------------------------------------------------------ */
 
-/* The field around a block, from a sample before it to two past its last: what edges that start in it and their
- * gradients look at. What is not in the volume is whatever is there. */
-enum { BEFORE = 1, SIDE = HEWN_BLOCK + 3, NEAR = 3 };
+/* The field around a block, from two samples before it to three past its last: what edges that start in it and their
+ * gradients look at, or fewer. What is not in the volume is whatever is there. */
+enum { BEFORE = HEWN_LATTICE_REACH, SIDE = HEWN_BLOCK + 2 * HEWN_LATTICE_REACH + 1, NEAR = 3 };
 
 typedef struct block_field {
     double values[SIDE][SIDE][SIDE]; /* k, j, i */
@@ -46,19 +46,20 @@ HEWN_LATTICE_INLINE void load_run(const hewn_lattice *lattice, const near_block 
 HEWN_LATTICE_INLINE void load_field(const hewn_lattice *lattice, const uint32_t place[3], uint32_t lo, uint32_t hi,
                                     block_field *out, hewn_voxel type)
 {
+    const uint32_t reach = lattice->planes ? HEWN_LATTICE_REACH : 1, first = BEFORE - reach;
     near_block near[NEAR][NEAR][NEAR];
     for (uint32_t n = 0; n < NEAR * NEAR * NEAR; n++)
         near[n / 9][n / 3 % 3][n % 3] =
             find_near(lattice->volume->blocks, place[0] + n % 3 - 1, place[1] + n / 3 % 3 - 1, place[2] + n / 9 - 1);
-    for (uint32_t k = lo; k < hi; k++)
-        for (uint32_t j = 0; j < SIDE; j++) {
+    for (uint32_t k = lo + first; k < hi - first; k++)
+        for (uint32_t j = first; j < SIDE - first; j++) {
             const uint32_t y = j + HEWN_BLOCK - BEFORE, z = k + HEWN_BLOCK - BEFORE;
             const near_block *row = near[z / HEWN_BLOCK][y / HEWN_BLOCK];
             const uint32_t number = y % HEWN_BLOCK + HEWN_BLOCK * (z % HEWN_BLOCK);
             double *to = out->values[k][j];
-            load_run(lattice, &row[0], number, HEWN_BLOCK - BEFORE, HEWN_BLOCK, to, type);
+            load_run(lattice, &row[0], number, HEWN_BLOCK - reach, HEWN_BLOCK, to + first, type);
             load_run(lattice, &row[1], number, 0, HEWN_BLOCK, to + BEFORE, type);
-            load_run(lattice, &row[2], number, 0, SIDE - HEWN_BLOCK - BEFORE, to + BEFORE + HEWN_BLOCK, type);
+            load_run(lattice, &row[2], number, 0, reach + 1, to + BEFORE + HEWN_BLOCK, type);
         }
 }
 
@@ -71,18 +72,23 @@ typedef struct block_edges {
     hewn_lattice_pen pen;
 } block_edges;
 
-/* Differences along each axis, central where there are samples on both sides. `at` is the sample in the block, `from`
- * the same in the volume. */
+/* `at` is the sample in the block, `from` the same in the volume. */
 static void gradient_at(const block_edges *edges, const uint32_t at[3], const uint32_t from[3], double out[3])
 {
     const uint32_t *dims = edges->lattice->volume->dims;
     const double *here = &edges->field.values[at[2] + BEFORE][at[1] + BEFORE][at[0] + BEFORE];
     static const ptrdiff_t steps[3] = {1, SIDE, SIDE * SIDE};
+    const uint32_t reach = edges->lattice->planes ? HEWN_LATTICE_REACH : 1;
+    hewn_lattice_line lines[3];
     for (int axis = 0; axis < 3; axis++) {
-        const ptrdiff_t down = from[axis] > 0 ? steps[axis] : 0, up = from[axis] + 1 < dims[axis] ? steps[axis] : 0;
-        const double rise = here[up] - here[-down];
-        out[axis] = down > 0 && up > 0 ? rise / 2 : rise;
+        const uint32_t rest = dims[axis] - 1 - from[axis];
+        hewn_lattice_line *line = &lines[axis];
+        line->before = from[axis] < reach ? from[axis] : reach;
+        line->after = rest < reach ? rest : reach;
+        for (int n = -(int)line->before; n <= (int)line->after; n++)
+            line->value[HEWN_LATTICE_REACH + n] = here[n * steps[axis]];
     }
+    hewn_lattice_gradient(edges->lattice, lines, out);
 }
 
 static void emit_edge(block_edges *edges, uint32_t x, uint32_t y, uint32_t z, bool inside)
@@ -104,13 +110,16 @@ static void emit_edge(block_edges *edges, uint32_t x, uint32_t y, uint32_t z, bo
     there[axis]++;
     const double *value = &edges->field.values[z + BEFORE][y + BEFORE][x + BEFORE];
     const double *next = &edges->field.values[there[2] + BEFORE][there[1] + BEFORE][there[0] + BEFORE];
-    const double share = hewn_lattice_share(lattice, hewn_lattice_agree(lattice, *value, inside),
-                                            hewn_lattice_agree(lattice, *next, !inside));
+    const double at_begin = hewn_lattice_agree(lattice, *value, inside);
+    const double at_end = hewn_lattice_agree(lattice, *next, !inside);
+    double share = hewn_lattice_share(lattice, at_begin, at_end);
     double first[3] = {0}, last[3] = {0};
     if (lattice->normals) {
         gradient_at(edges, here, from, first);
         gradient_at(edges, there, to, last);
     }
+    if (lattice->planes)
+        hewn_lattice_follow_bend(lattice, axis, at_begin, at_end, &share, first, last);
     hewn_lattice_put_edge(&edges->pen, from, share, inside, first, last);
 }
 
@@ -201,12 +210,12 @@ static void cut_block(const hewn_lattice *lattice, uint64_t number, hewn_triangl
                 continue;
             const hewn_lattice_row *begins[4];
             find_rows(lattice, number, y, z, begins);
-            hewn_lattice_cell_row row = hewn_lattice_begin_cells(lattice, out, begins);
+            hewn_lattice_cell_row row = hewn_lattice_begin_cells(lattice, out, begins, start[1] + y, start[2] + z);
             for (; rest; rest &= rest - 1) {
                 const uint32_t x = hewn_lattice_lowest(rest);
                 const uint32_t pattern = hewn_block_pattern(&signs, z, x + HEWN_BLOCK * y);
                 const uint32_t place = hewn_lattice_patch(lattice, pattern, start[0] + x, start[1] + y, start[2] + z);
-                hewn_lattice_cut_cell(&row, pattern, lattice->table + place, turn);
+                hewn_lattice_cut_cell(&row, start[0] + x, pattern, lattice->table + place, turn);
             }
         }
     }

@@ -108,7 +108,7 @@ static block_counts count_block(const hewn_lattice *lattice, uint64_t number)
         for (uint32_t axis = 0; axis < 3; axis++) {
             const uint64_t crossed = hewn_block_crossed(&signs, axis, z);
             count_bits(crossed, axis, row);
-            if (lattice->rim && crossed && z < own[1])
+            if (lattice->rim && !lattice->repeats && crossed && z < own[1])
                 counts.caps += hewn_lattice_ones(crossed & hewn_block_rim_edges(lattice, number, axis, z));
         }
         if (z < own[1])

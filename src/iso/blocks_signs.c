@@ -91,15 +91,76 @@ static void find_bits(const hewn_lattice *lattice, uint32_t x, uint32_t y, uint3
     memcpy(out, all, slices * sizeof *out);
 }
 
+enum { SLICES = HEWN_BLOCK + 1 };
+
+/* Slices of blocks at i, i + 1, and these at j + 1: of the latter only what is next to the first block matters. */
+typedef uint64_t block_square[4][SLICES];
+
+static bool bit_at(block_square of, int x, int y, int z)
+{
+    return of[x / HEWN_BLOCK + 2 * (y / HEWN_BLOCK)][z] >> (x % HEWN_BLOCK + HEWN_BLOCK * (y % HEWN_BLOCK)) & 1;
+}
+
+static void copy_bit(block_square of, const int from[3], const int to[3])
+{
+    uint64_t *slice = &of[to[0] / HEWN_BLOCK + 2 * (to[1] / HEWN_BLOCK)][to[2]];
+    const uint64_t bit = (uint64_t)1 << (to[0] % HEWN_BLOCK + HEWN_BLOCK * (to[1] % HEWN_BLOCK));
+    *slice = bit_at(of, from[0], from[1], from[2]) ? *slice | bit : *slice & ~bit;
+}
+
+/* Samples across an axis, at place `to` along it, become those at `from`. */
+static void copy_layer(block_square of, int axis, int from, int to)
+{
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    int source[3], target[3];
+    source[axis] = from;
+    target[axis] = to;
+    for (int n = 0; n < SLICES * SLICES; n++) {
+        source[u] = target[u] = n % SLICES;
+        source[v] = target[v] = n / SLICES;
+        copy_bit(of, source, target);
+    }
+}
+
+/* The rim repeats what is beside it. Where only the rim is here, and that is not, there is no cell and no edge. */
+static void repeat_rim(const hewn_lattice *lattice, const uint32_t place[3], block_square of)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const int64_t low = (int64_t)lattice->volume->blocks->lead[axis] - 1 - (int64_t)HEWN_BLOCK * place[axis];
+        const int64_t high = low + lattice->dims[axis] - 1;
+        if (low >= 0 && low < HEWN_BLOCK)
+            copy_layer(of, axis, (int)low + 1, (int)low);
+        if (high > 0 && high <= HEWN_BLOCK)
+            copy_layer(of, axis, (int)high - 1, (int)high);
+    }
+}
+
+static void find_limits(const hewn_lattice *lattice, const uint32_t place[3], hewn_block_signs *out)
+{
+    uint32_t may[3], in[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const uint32_t lead = lattice->volume->blocks->lead[axis], begin = lead - lattice->rim;
+        may[axis] = within(place[axis], begin, begin + lattice->dims[axis] - 1);
+        in[axis] = lattice->repeats ? within(place[axis], lead, lead + lattice->volume->dims[axis]) : 0xFF;
+    }
+    out->may_i = may[0] * COLUMN;
+    out->may_j = spread_rows(may[1]);
+    out->may_k = may[2];
+    out->in_i = in[0] * COLUMN;
+    out->in_j = spread_rows(in[1]);
+    out->in_k = in[2];
+}
+
 void hewn_block_signs_load(const hewn_lattice *lattice, const uint32_t place[3], hewn_block_signs *out)
 {
-    enum { SLICES = HEWN_BLOCK + 1 };
-    uint64_t of[4][SLICES]; /* blocks at i, i + 1, and these at j + 1 */
+    block_square of;
     const uint32_t x = place[0], y = place[1], z = place[2];
     for (uint32_t n = 0; n < 4; n++) {
         find_bits(lattice, x + (n & 1), y + (n >> 1), z, HEWN_BLOCK, of[n]);
         find_bits(lattice, x + (n & 1), y + (n >> 1), z + 1, 1, of[n] + HEWN_BLOCK);
     }
+    if (lattice->repeats)
+        repeat_rim(lattice, place, of);
     for (uint32_t k = 0; k < SLICES; k++) {
         const uint64_t low = COLUMN * 0x7F;
         out->here[k] = of[0][k];
@@ -108,14 +169,7 @@ void hewn_block_signs_load(const hewn_lattice *lattice, const uint32_t place[3],
         const uint64_t ahead = (of[2][k] >> 1 & low) | (of[3][k] & COLUMN) << 7;
         out->next_ij[k] = out->next_i[k] >> HEWN_BLOCK | ahead << 7 * HEWN_BLOCK;
     }
-    uint32_t may[3];
-    for (int axis = 0; axis < 3; axis++) {
-        const uint32_t begin = lattice->volume->blocks->lead[axis] - lattice->rim;
-        may[axis] = within(place[axis], begin, begin + lattice->dims[axis] - 1);
-    }
-    out->may_i = may[0] * COLUMN;
-    out->may_j = spread_rows(may[1]);
-    out->may_k = may[2];
+    find_limits(lattice, place, out);
 }
 
 /* --- the surface -------------------------------------------------------------------------------------------------- */

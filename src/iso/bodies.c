@@ -71,10 +71,10 @@ static hewn_result find_shells(bodies *found, hewn_error *error)
 
 /* --- which lies in which ------------------------------------------------------------------------------------------ */
 
-/* The shell of a crossing: by other methods that of its vertex, by nets that of its quad. */
+/* The shell of a crossing: that of its vertex, by dual methods that of its quad. */
 static uint32_t shell_of(const bodies *found, uint64_t crossing)
 {
-    return found->of[found->lattice->nets ? found->mesh->indices[6 * crossing] : crossing];
+    return found->of[found->lattice->dual ? found->mesh->indices[6 * crossing] : crossing];
 }
 
 /* A crossing of a row at a place along i; `before` is the shell of the one before it, and then this one's. `inside`:

@@ -2,6 +2,9 @@
  *
  * A closed lattice has a rim: one more layer of samples on every side, none of them inside, that stands where the
  * outermost samples do. So its places are those of the samples plus `rim`, and every crossed edge has its four cells.
+ * An open one has none, but for the dual methods, whose vertices lie in cells: there the rim repeats the samples beside
+ * it. Its cells then have no thickness, and their vertices lie on the bounds. Edges in such a rim are those beside it
+ * once more, and count as not there.
  *
  * Edges belong to the row of samples (along i) that they start in. Vertices are numbered row by row, in a row those on
  * edges along i first, then j, then k; after all of these come the vertices in cells, in the order of their cells.
@@ -35,7 +38,8 @@ typedef struct hewn_lattice {
     struct hewn_lattice_blocks
         *blocks;      /* where samples are in blocks: signs and rows are there (iso/lattice_blocks.h) */
     uint64_t first;   /* sample (0, 0, 0) of the frame */
-    uint32_t rim;     /* 1 where it is closed, else 0 */
+    uint32_t rim;     /* 1 where there is one, else 0 */
+    bool repeats;     /* the rim repeats the samples beside it */
     uint32_t dims[3]; /* with the rim */
     uint32_t begin;   /* the slab's slices are these, */
     uint32_t end;     /* up to before this one */
@@ -47,6 +51,7 @@ typedef struct hewn_lattice {
     double margin;
     double place[12]; /* to the mesh's space, row by row */
     double turn[9];   /* takes the gradient of samples to an outward direction there */
+    double back[9];   /* from a step there to one between samples */
     bool mirrors;
     uint32_t words;         /* a row has so many words of 64 bits, and one of 0 follows the last row */
     uint64_t *inside;       /* bit i % 64 of word i / 64, of the slab's rows and those of two more slices */
@@ -54,7 +59,8 @@ typedef struct hewn_lattice {
     const uint32_t *table;  /* of patches, as in iso/mc33.h */
     bool flipped;           /* the table's inside is what is not inside here */
     bool normals;
-    bool nets;                       /* the table is that of surface nets (iso/lattice_nets.h), */
+    bool dual;                       /* the table is that of dual methods (iso/lattice_dual.h), */
+    bool planes;                     /* vertices lie where the planes of crossings meet, */
     const hewn_triangles *crossings; /* and these are what vertices on edges are otherwise */
     hewn_lattice_sums
         *slices; /* or NULL: where counting puts what is before each slice of the slab, and after the last */
@@ -102,6 +108,23 @@ static inline uint64_t hewn_lattice_next(const uint64_t *bits, uint32_t word)
 static inline uint64_t hewn_lattice_mask(uint32_t word, uint32_t count)
 {
     return count >= 64 * (word + 1) ? ~(uint64_t)0 : count <= 64 * word ? 0 : ~(uint64_t)0 >> (64 - count % 64);
+}
+
+/* Samples of a word of row (j, k) whose edges along an axis may be crossed. */
+static inline uint64_t hewn_lattice_edges(const hewn_lattice *lattice, uint32_t axis, uint32_t j, uint32_t k,
+                                          uint32_t word)
+{
+    const uint32_t count = axis == 0 ? lattice->dims[0] - 1 : lattice->dims[0];
+    uint64_t bits = hewn_lattice_mask(word, count);
+    if (!lattice->repeats)
+        return bits;
+    if ((axis != 1 && hewn_lattice_in_rim(lattice, 1, j)) || (axis != 2 && hewn_lattice_in_rim(lattice, 2, k)))
+        return 0;
+    if (axis != 0) {
+        bits &= word == 0 ? ~(uint64_t)1 : ~(uint64_t)0;
+        bits &= word == (count - 1) / 64 ? ~((uint64_t)1 << (count - 1) % 64) : ~(uint64_t)0;
+    }
+    return bits;
 }
 
 static inline uint32_t hewn_lattice_lowest(uint64_t bits)

@@ -43,6 +43,8 @@ typedef struct hewn_block_signs {
     uint64_t here[HEWN_BLOCK + 1], next_i[HEWN_BLOCK + 1], next_j[HEWN_BLOCK + 1], next_ij[HEWN_BLOCK + 1];
     uint64_t may_i, may_j; /* bits that have a neighbour */
     uint32_t may_k;        /* slices that do, a bit each */
+    uint64_t in_i, in_j;   /* bits whose edges along other axes count: all but those in a rim that repeats */
+    uint32_t in_k;
 } hewn_block_signs;
 
 void hewn_block_signs_load(const hewn_lattice *lattice, const uint32_t place[3], hewn_block_signs *out);
@@ -50,11 +52,12 @@ void hewn_block_signs_load(const hewn_lattice *lattice, const uint32_t place[3],
 /* Edges of a slice that the surface crosses, by the axis that they run along. */
 static inline uint64_t hewn_block_crossed(const hewn_block_signs *signs, uint32_t axis, uint32_t z)
 {
+    const uint64_t slice = signs->in_k >> z & 1 ? ~(uint64_t)0 : 0;
     if (axis == 0)
-        return (signs->here[z] ^ signs->next_i[z]) & signs->may_i;
+        return (signs->here[z] ^ signs->next_i[z]) & signs->may_i & signs->in_j & slice;
     if (axis == 1)
-        return (signs->here[z] ^ signs->next_j[z]) & signs->may_j;
-    return signs->may_k >> z & 1 ? signs->here[z] ^ signs->here[z + 1] : 0;
+        return (signs->here[z] ^ signs->next_j[z]) & signs->may_j & signs->in_i & slice;
+    return signs->may_k >> z & 1 ? (signs->here[z] ^ signs->here[z + 1]) & signs->in_i & signs->in_j : 0;
 }
 
 /* Active cells that start in a slice. */

@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "iso/decide.h"
 #include "iso/lattice_blocks.h"
-#include "iso/lattice_nets.h"
+#include "iso/lattice_dual.h"
 #include "iso/lattice_sample.h"
 
 /* --- decisions ---------------------------------------------------------------------------------------------------- */
@@ -17,14 +17,17 @@ static bool touches_rim(const hewn_lattice *lattice, uint32_t i, uint32_t j, uin
     return false;
 }
 
-/* Where a sample is: NULL in the rim. */
+/* Where a sample is: NULL in the rim, but where that repeats samples. */
 static const void *find_sample(const hewn_lattice *lattice, const uint32_t at[3], uint64_t *number)
 {
     const hewn_volume *volume = lattice->volume;
-    for (int axis = 0; axis < 3; axis++)
-        if (hewn_lattice_in_rim(lattice, axis, at[axis]))
+    uint32_t ijk[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const bool in_rim = hewn_lattice_in_rim(lattice, axis, at[axis]);
+        if (in_rim && !lattice->repeats)
             return NULL;
-    const uint32_t ijk[3] = {at[0] - lattice->rim, at[1] - lattice->rim, at[2] - lattice->rim};
+        ijk[axis] = in_rim && at[axis] == 0 ? 0 : at[axis] - lattice->rim - in_rim;
+    }
     if (volume->blocks)
         return hewn_blocks_sample(volume->blocks, ijk, number);
     *number = lattice->first + ijk[0] + volume->dims[0] * (ijk[1] + (uint64_t)volume->dims[1] * ijk[2]);
@@ -58,8 +61,8 @@ uint32_t hewn_lattice_patch(const hewn_lattice *lattice, uint32_t pattern, uint3
     uint32_t head = lattice->table[lattice->flipped ? pattern ^ 255u : pattern];
     if (!(head & HEWN_MC33_DECIDES))
         return head & 0xFFFF;
-    if (lattice->nets)
-        return hewn_nets_decide(lattice, head, (const uint32_t[3]){i, j, k});
+    if (lattice->dual)
+        return hewn_lattice_dual_decide(lattice, head, (const uint32_t[3]){i, j, k});
     double values[8];
     for (uint32_t c = 0; c < 8; c++) {
         const uint32_t at[3] = {i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)};
@@ -79,10 +82,10 @@ static void count_edges(const hewn_lattice *lattice, uint32_t j, uint32_t k, hew
     const uint64_t *beside = j + 1 < lattice->dims[1] ? hewn_lattice_bits(lattice, j + 1, k) : here;
     const uint64_t *above = k + 1 < lattice->dims[2] ? hewn_lattice_bits(lattice, j, k + 1) : here;
     for (uint32_t word = 0; word < lattice->words; word++) {
-        uint64_t along = (here[word] ^ hewn_lattice_next(here, word)) & hewn_lattice_mask(word, lattice->dims[0] - 1);
-        row->vertices[0] += hewn_lattice_ones(along);
-        row->vertices[1] += hewn_lattice_ones(here[word] ^ beside[word]);
-        row->vertices[2] += hewn_lattice_ones(here[word] ^ above[word]);
+        const uint64_t others[3] = {hewn_lattice_next(here, word), beside[word], above[word]};
+        for (uint32_t axis = 0; axis < 3; axis++)
+            row->vertices[axis] +=
+                hewn_lattice_ones((here[word] ^ others[axis]) & hewn_lattice_edges(lattice, axis, j, k, word));
     }
 }
 
@@ -158,7 +161,7 @@ static void count_rows(hewn_lattice *lattice)
             count_edges(lattice, j, k, row);
             if (k >= lattice->end)
                 continue;
-            if (lattice->rim)
+            if (lattice->rim && !lattice->repeats)
                 caps += cap_vertices(lattice, j, k, row);
             if (j + 1 == lattice->dims[1] || k + 1 == lattice->dims[2])
                 continue;

@@ -1,6 +1,7 @@
 #include "iso/lattice_pen.h"
 
 #include <math.h>
+#include <string.h>
 
 static void put_position(hewn_lattice_pen *pen, const double at[3])
 {
@@ -45,6 +46,32 @@ void hewn_lattice_put_cap(hewn_lattice_pen *pen, const uint32_t at[3], bool end)
     /* turn makes outward directions of gradients: above, the outside is where values fall. */
     if (lattice->normals)
         put_normal(pen, none, end == lattice->above ? -1 : 1);
+}
+
+/* Cosine of the angle between gradients that are far apart. */
+static const double BENT = 0.9;
+
+void hewn_lattice_follow_bend(const hewn_lattice *lattice, uint32_t axis, double here, double there, double *share,
+                              double first[3], double last[3])
+{
+    double both = 0, sizes[2] = {0};
+    for (int a = 0; a < 3; a++) {
+        both += first[a] * last[a];
+        sizes[0] += first[a] * first[a];
+        sizes[1] += last[a] * last[a];
+    }
+    if (!(both < BENT * sqrt(sizes[0]) * sqrt(sizes[1])))
+        return;
+    const double up = first[axis], down = last[axis], bend = (there - here - down) / (up - down);
+    if (!(bend > 0 && bend < 1))
+        return;
+    const double value = here + bend * up;
+    const bool before = (value < 0) != (here < 0);
+    const double at = before ? here / (here - value) * bend : 1 - there / (there - value) * (1 - bend);
+    if (!(at > 0 && at < 1))
+        return;
+    *share = at < lattice->margin ? lattice->margin : at > 1 - lattice->margin ? 1 - lattice->margin : at;
+    memcpy(before ? last : first, before ? first : last, 3 * sizeof *first);
 }
 
 void hewn_lattice_put_edge(hewn_lattice_pen *pen, const uint32_t from[3], double share, bool inside,

@@ -22,6 +22,12 @@ static inline double hewn_lattice_share(const hewn_lattice *lattice, double here
     return share < lattice->margin ? lattice->margin : share > 1 - lattice->margin ? 1 - lattice->margin : share;
 }
 
+/* Where planes are to meet and gradients at an edge's ends differ much, two of them meet on it: the field is taken for
+ * straight from each end to there (subcell resolution, Harten 1989), which says where it is 0, and only the gradient of
+ * that side counts. `here` and `there` are the values at the ends. */
+void hewn_lattice_follow_bend(const hewn_lattice *lattice, uint32_t axis, double here, double there, double *share,
+                              double first[3], double last[3]);
+
 /* An edge from sample `from` on, `inside` or not. Gradients of the field are those at its ends; not looked at where
  * there are no normals. */
 void hewn_lattice_put_edge(hewn_lattice_pen *pen, const uint32_t from[3], double share, bool inside,

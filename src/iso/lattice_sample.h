@@ -54,4 +54,48 @@ HEWN_LATTICE_INLINE double hewn_lattice_signed(const hewn_lattice *lattice, uint
     return hewn_lattice_agree(lattice, hewn_lattice_value(lattice, at, type), inside);
 }
 
+/* --- slopes ------------------------------------------------------------------------------------------------------- */
+
+/* Samples that slopes look at on each side: what lies beyond the next one tells on which side there is a bend. */
+enum { HEWN_LATTICE_REACH = 2 };
+
+/* The field along an axis around a sample: value[2] is its own. */
+typedef struct hewn_lattice_line {
+    double value[2 * HEWN_LATTICE_REACH + 1];
+    uint32_t before, after; /* samples that there are on each side, 2 at most; others have no value */
+} hewn_lattice_line;
+
+/* The difference between neighbours, central where there are samples on both sides. */
+HEWN_LATTICE_INLINE double hewn_lattice_slope(const hewn_lattice_line *line)
+{
+    const double *f = line->value + HEWN_LATTICE_REACH;
+    if (line->before > 0 && line->after > 0)
+        return (f[1] - f[-1]) / 2;
+    return line->after > 0 ? f[1] - f[0] : line->before > 0 ? f[0] - f[-1] : 0;
+}
+
+/* The gradient at a sample. Where planes are to meet, that of the smoother side counts for more, so that an edge of the
+ * surface does not blur over its neighbours (after Liu, Osher and Chan 1994, 'Weighted essentially non-oscillatory
+ * schemes'). */
+static inline void hewn_lattice_gradient(const hewn_lattice *lattice, const hewn_lattice_line lines[3], double out[3])
+{
+    double size = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        out[axis] = hewn_lattice_slope(&lines[axis]);
+        size += out[axis] * out[axis];
+    }
+    for (int axis = 0; axis < 3 && lattice->planes; axis++) {
+        const hewn_lattice_line *line = &lines[axis];
+        const double *f = line->value + HEWN_LATTICE_REACH, smooth = 1e-4 * size;
+        if (line->before == 0 || line->after == 0)
+            continue;
+        const double here = f[-1] - 2 * f[0] + f[1];
+        const double below = line->before > 1 ? f[-2] - 2 * f[-1] + f[0] : here;
+        const double above = line->after > 1 ? f[2] - 2 * f[1] + f[0] : here;
+        const double a = smooth + below * below, b = smooth + above * above, most = a > b ? a : b;
+        if (most > 0)
+            out[axis] = ((f[0] - f[-1]) * (b / most) + (f[1] - f[0]) * (a / most)) / (a / most + b / most);
+    }
+}
+
 #endif

@@ -27,6 +27,19 @@ static void find_row(const hewn_lattice *lattice, uint64_t from, uint64_t *to)
     }
 }
 
+/* The rim of a row that was found says what the samples beside it do. */
+static void repeat_ends(const hewn_lattice *lattice, uint64_t *row)
+{
+    const uint32_t last = lattice->dims[0] - 1, before = last - 1;
+    row[0] |= row[0] >> 1 & 1;
+    row[last / 64] |= (row[before / 64] >> before % 64 & 1) << last % 64;
+}
+
+static uint32_t beside_rim(const hewn_lattice *lattice, int axis, uint32_t at)
+{
+    return at == 0 ? 1 : at == lattice->dims[axis] - 1 ? at - 1 : at;
+}
+
 void hewn_lattice_find_signs(hewn_lattice *lattice)
 {
     if (lattice->blocks) /* they were found before slabs were laid */
@@ -36,11 +49,17 @@ void hewn_lattice_find_signs(hewn_lattice *lattice)
     for (uint64_t row = 0; row < rows; row++) {
         uint32_t j = (uint32_t)(row % lattice->dims[1]), k = lattice->begin + (uint32_t)(row / lattice->dims[1]);
         uint64_t *to = lattice->inside + row * lattice->words;
+        if (lattice->repeats) {
+            j = beside_rim(lattice, 1, j);
+            k = beside_rim(lattice, 2, k);
+        }
         uint64_t source = (uint64_t)(k - lattice->rim) * lattice->volume->dims[1] + (j - lattice->rim);
         if (hewn_lattice_in_rim(lattice, 1, j) || hewn_lattice_in_rim(lattice, 2, k))
             memset(to, 0, lattice->words * sizeof *to);
         else
             find_row(lattice, lattice->first + source * lattice->volume->dims[0], to);
+        if (lattice->repeats)
+            repeat_ends(lattice, to);
     }
     lattice->inside[rows * lattice->words] = 0;
 }

@@ -2,24 +2,39 @@
 #include <math.h>
 
 #include "iso/lattice_blocks.h"
-#include "iso/lattice_nets.h"
+#include "iso/lattice_dual.h"
 #include "iso/patch.h"
 
-hewn_lattice_cell_row hewn_lattice_begin_cells(const hewn_lattice *lattice, hewn_triangles *out,
-                                               const hewn_lattice_row *const begins[4])
+/* Which of four rows around a row of cells has the edges of one of them: another one where that is in a rim that
+ * repeats. */
+static uint32_t edges_of(const hewn_lattice *lattice, uint32_t n, uint32_t j, uint32_t k)
 {
-    hewn_lattice_cell_row row = {.lattice = lattice, .out = out};
+    const uint32_t at[2] = {j, k};
+    for (uint32_t i = 0; i < 2 && lattice->repeats; i++) {
+        if (at[i] == 0)
+            n |= 1u << i;
+        else if (at[i] + 2 == lattice->dims[1 + i])
+            n &= ~(1u << i);
+    }
+    return n;
+}
+
+hewn_lattice_cell_row hewn_lattice_begin_cells(const hewn_lattice *lattice, hewn_triangles *out,
+                                               const hewn_lattice_row *const begins[4], uint32_t j, uint32_t k)
+{
+    hewn_lattice_cell_row row = {.lattice = lattice, .out = out, .j = j, .k = k};
     for (uint32_t i = 0; i < 4; i++) {
-        row.along[i] = begins[i]->vertices[0];
+        const hewn_lattice_row *from = begins[edges_of(lattice, i, j, k)];
+        row.along[i] = from->vertices[0];
         if ((i & 1) == 0)
-            row.beside[i >> 1] = begins[i]->vertices[1];
+            row.beside[i >> 1] = from->vertices[1];
         if (i < 2)
-            row.upright[i] = begins[i]->vertices[2];
+            row.upright[i] = from->vertices[2];
     }
     const hewn_lattice_row *own = begins[0];
     row.centre = own->centres;
     row.centre_place = own->centres - lattice->before.centres;
-    if (!lattice->nets) { /* vertices on edges come first */
+    if (!lattice->dual) { /* vertices on edges come first */
         row.centre += (uint32_t)lattice->vertex_count;
         row.centre_place += lattice->reached - lattice->before.vertices;
     }
@@ -27,9 +42,12 @@ hewn_lattice_cell_row hewn_lattice_begin_cells(const hewn_lattice *lattice, hewn
     return row;
 }
 
-/* The vertices on the edges of a cell, as iso/cube.h numbers them; what is not crossed has some other number. */
-static void name_edges(hewn_lattice_cell_row *row, uint32_t pattern, uint32_t names[16])
+/* The vertices on the edges of a cell, as iso/cube.h numbers them; what is not crossed has some other number. Cells of
+ * a rim that repeats have the same edges on both sides. */
+static void name_edges(hewn_lattice_cell_row *row, uint32_t i_of_cell, uint32_t pattern, uint32_t names[16])
 {
+    const hewn_lattice *lattice = row->lattice;
+    const bool thin = lattice->repeats && (i_of_cell == 0 || i_of_cell + 2 == lattice->dims[0]);
     uint32_t ahead = pattern ^ pattern >> 2, over = pattern ^ pattern >> 4, along = pattern ^ pattern >> 1;
     for (uint32_t i = 0; i < 4; i++) {
         names[i] = row->along[i];
@@ -37,10 +55,10 @@ static void name_edges(hewn_lattice_cell_row *row, uint32_t pattern, uint32_t na
     }
     for (uint32_t i = 0; i < 2; i++) {
         names[4 + 2 * i] = row->beside[i];
-        row->beside[i] += ahead >> 4 * i & 1;
+        row->beside[i] += !thin && (ahead >> 4 * i & 1);
         names[5 + 2 * i] = row->beside[i];
         names[8 + 2 * i] = row->upright[i];
-        row->upright[i] += over >> 2 * i & 1;
+        row->upright[i] += !thin && (over >> 2 * i & 1);
         names[9 + 2 * i] = row->upright[i];
     }
 }
@@ -87,24 +105,24 @@ static void place_centre(const hewn_lattice_cell_row *row, const uint32_t names[
 
 /* --- cells -------------------------------------------------------------------------------------------------------- */
 
-void hewn_lattice_cut_cell(hewn_lattice_cell_row *row, uint32_t pattern, const uint32_t *record, bool turn)
+void hewn_lattice_cut_cell(hewn_lattice_cell_row *row, uint32_t i, uint32_t pattern, const uint32_t *record, bool turn)
 {
     uint32_t names[16] = {0};
-    name_edges(row, pattern, names);
-    if (row->lattice->nets) {
-        hewn_nets_place(row, names, pattern, record, turn);
+    name_edges(row, i, pattern, names);
+    if (row->lattice->dual) {
+        hewn_lattice_dual_place(row, i, names, pattern, record, turn);
         return;
     }
     uint32_t triangles = record[0] & 255, centres = record[0] >> 8;
-    for (uint32_t i = 0; i < centres; i++) {
-        place_centre(row, names, record[1 + i / 2] >> 16 * (i % 2) & 0xFFFF);
-        names[HEWN_PATCH_FIRST_CENTRE + i] = row->centre++;
+    for (uint32_t c = 0; c < centres; c++) {
+        place_centre(row, names, record[1 + c / 2] >> 16 * (c % 2) & 0xFFFF);
+        names[HEWN_PATCH_FIRST_CENTRE + c] = row->centre++;
         row->centre_place++;
     }
     const uint32_t *words = record + 1 + (centres + 1) / 2;
     uint32_t *to = row->out->indices + 3 * row->triangle;
-    for (uint32_t i = 0; i < triangles; i++, to += 3) {
-        uint32_t word = words[i / 2] >> 16 * (i % 2);
+    for (uint32_t t = 0; t < triangles; t++, to += 3) {
+        uint32_t word = words[t / 2] >> 16 * (t % 2);
         to[0] = names[word & 15];
         to[turn ? 2 : 1] = names[word >> 4 & 15];
         to[turn ? 1 : 2] = names[word >> 8 & 15];
@@ -127,14 +145,14 @@ void hewn_lattice_emit_triangles(const hewn_lattice *lattice, hewn_triangles *ou
             const hewn_lattice_row *begins[4];
             for (uint32_t i = 0; i < 4; i++)
                 begins[i] = hewn_lattice_row_at(lattice, j + (i & 1), k + (i >> 1));
-            hewn_lattice_cell_row row = hewn_lattice_begin_cells(lattice, out, begins);
+            hewn_lattice_cell_row row = hewn_lattice_begin_cells(lattice, out, begins, j, k);
             hewn_lattice_cells cells = hewn_lattice_cells_at(lattice, j, k);
             for (uint32_t word = 0; word < lattice->words; word++) {
                 hewn_lattice_load(lattice, &cells, word);
                 for (uint64_t rest = cells.active; rest; rest &= rest - 1) {
                     uint32_t bit = hewn_lattice_lowest(rest), pattern = hewn_lattice_pattern(&cells, bit);
                     uint32_t place = hewn_lattice_patch(lattice, pattern, 64 * word + bit, j, k);
-                    hewn_lattice_cut_cell(&row, pattern, lattice->table + place, turn);
+                    hewn_lattice_cut_cell(&row, 64 * word + bit, pattern, lattice->table + place, turn);
                 }
             }
         }

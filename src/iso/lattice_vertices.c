@@ -9,15 +9,15 @@ typedef struct edge_row {
     hewn_lattice_pen pen;
 } edge_row;
 
-/* A difference of values along an axis, central where there are samples on both sides. */
-HEWN_LATTICE_INLINE double slope_along(const hewn_lattice *lattice, uint64_t number, uint32_t at, uint32_t count,
-                                       uint64_t step, hewn_voxel type)
+/* Samples along an axis around one that is at `at` of `count`. */
+HEWN_LATTICE_INLINE hewn_lattice_line line_along(const hewn_lattice *lattice, uint64_t number, uint32_t at,
+                                                 uint32_t count, uint64_t step, hewn_voxel type)
 {
-    if (count == 1)
-        return 0;
-    uint64_t lo = at > 0 ? number - step : number, hi = at + 1 < count ? number + step : number;
-    double rise = hewn_lattice_value(lattice, hi, type) - hewn_lattice_value(lattice, lo, type);
-    return hi - lo == 2 * step ? rise / 2 : rise;
+    const uint32_t reach = lattice->planes ? HEWN_LATTICE_REACH : 1, rest = count - 1 - at;
+    hewn_lattice_line line = {.before = at < reach ? at : reach, .after = rest < reach ? rest : reach};
+    for (uint32_t n = HEWN_LATTICE_REACH - line.before; n <= HEWN_LATTICE_REACH + line.after; n++)
+        line.value[n] = hewn_lattice_value(lattice, number + step * n - step * HEWN_LATTICE_REACH, type);
+    return line;
 }
 
 HEWN_LATTICE_INLINE void gradient_at(const hewn_lattice *lattice, const uint32_t at[3], hewn_voxel type, double out[3])
@@ -25,8 +25,10 @@ HEWN_LATTICE_INLINE void gradient_at(const hewn_lattice *lattice, const uint32_t
     const uint32_t *dims = lattice->volume->dims;
     uint64_t step[3] = {1, dims[0], (uint64_t)dims[0] * dims[1]};
     uint64_t number = lattice->first + at[0] + at[1] * step[1] + at[2] * step[2];
+    hewn_lattice_line lines[3];
     for (int axis = 0; axis < 3; axis++)
-        out[axis] = slope_along(lattice, number, at[axis], dims[axis], step[axis], type);
+        lines[axis] = line_along(lattice, number, at[axis], dims[axis], step[axis], type);
+    hewn_lattice_gradient(lattice, lines, out);
 }
 
 HEWN_LATTICE_INLINE void emit_edge(edge_row *row, uint32_t i, bool inside, hewn_voxel type)
@@ -47,13 +49,16 @@ HEWN_LATTICE_INLINE void emit_edge(edge_row *row, uint32_t i, bool inside, hewn_
     to[axis]++;
     uint64_t step = axis == 0 ? 1 : axis == 1 ? dims[0] : (uint64_t)dims[0] * dims[1];
     uint64_t number = lattice->first + from[0] + dims[0] * (from[1] + (uint64_t)dims[1] * from[2]);
-    double share = hewn_lattice_share(lattice, hewn_lattice_signed(lattice, number, inside, type),
-                                      hewn_lattice_signed(lattice, number + step, !inside, type));
+    const double here = hewn_lattice_signed(lattice, number, inside, type);
+    const double there = hewn_lattice_signed(lattice, number + step, !inside, type);
+    double share = hewn_lattice_share(lattice, here, there);
     double first[3] = {0}, last[3] = {0};
     if (lattice->normals) {
         gradient_at(lattice, from, type, first);
         gradient_at(lattice, to, type, last);
     }
+    if (lattice->planes)
+        hewn_lattice_follow_bend(lattice, axis, here, there, &share, first, last);
     hewn_lattice_put_edge(&row->pen, from, share, inside, first, last);
 }
 
@@ -64,10 +69,9 @@ HEWN_LATTICE_INLINE void emit_row(edge_row *row, hewn_voxel type)
     const uint64_t *here = hewn_lattice_bits(lattice, row->j, row->k), *other = here;
     if (axis > 0)
         other = hewn_lattice_bits(lattice, row->j + (axis == 1), row->k + (axis == 2));
-    uint32_t count = axis == 0 ? lattice->dims[0] - 1 : lattice->dims[0];
     for (uint32_t word = 0; word < lattice->words; word++) {
         uint64_t next = axis == 0 ? hewn_lattice_next(here, word) : other[word];
-        uint64_t rest = (here[word] ^ next) & hewn_lattice_mask(word, count);
+        uint64_t rest = (here[word] ^ next) & hewn_lattice_edges(lattice, axis, row->j, row->k, word);
         for (; rest; rest &= rest - 1) {
             uint32_t bit = hewn_lattice_lowest(rest);
             emit_edge(row, 64 * word + bit, here[word] >> bit & 1, type);

@@ -18,7 +18,7 @@ typedef struct hewn_quadric {
     double weight;
 } hewn_quadric;
 
-/* The normal has unit length. */
+/* The normal has unit length, or whatever length makes its products with steps what distances are to be. */
 void hewn_quadric_add_plane(hewn_quadric *quadric, const double point[3], const double normal[3]);
 void hewn_quadric_add(hewn_quadric *quadric, const hewn_quadric *other);
 

@@ -10,7 +10,7 @@
 #include "base/progress.h"
 #include "iso/bodies.h"
 #include "iso/lattice_blocks.h"
-#include "iso/lattice_nets.h"
+#include "iso/lattice_dual.h"
 #include "iso/marching_cubes.h"
 
 /* The coarsest that floats may be: as a part of a voxel. */
@@ -61,7 +61,7 @@ static double find_margin(const hewn_lattice *lattice, const double inverse[9])
     for (int i = 0; i < 9; i++)
         sum += inverse[i] * inverse[i];
     /* The mean of a loop is at least a third as far from a cell's face as those of its crossings that are not in it. */
-    return fmax(HEWN_LATTICE_MARGIN, (lattice->nets ? 6 : 2) * ldexp(1, exponent - 24) * sqrt(sum));
+    return fmax(HEWN_LATTICE_MARGIN, (lattice->dual ? 6 : 2) * ldexp(1, exponent - 24) * sqrt(sum));
 }
 
 static hewn_result set_place(hewn_lattice *lattice, const double *place, hewn_error *error)
@@ -79,6 +79,7 @@ static hewn_result set_place(hewn_lattice *lattice, const double *place, hewn_er
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             lattice->turn[3 * i + j] = lattice->above ? -inverse[3 * j + i] : inverse[3 * j + i];
+    memcpy(lattice->back, inverse, sizeof inverse);
     lattice->margin = find_margin(lattice, inverse);
     if (!(lattice->margin <= MOST_MARGIN))
         return hewn_fail(error, HEWN_BAD_INPUT,
@@ -116,13 +117,12 @@ static hewn_result check(const hewn_volume *volume, const hewn_volume_extract_de
                          "bodies can be chosen where the surface is closed, not with open");
     if (desc->keep && !(desc->keep->least_volume >= 0 && isfinite(desc->keep->least_volume)))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a least volume of %g makes no sense", desc->keep->least_volume);
-    if (method != HEWN_METHOD_MC33 && method != HEWN_METHOD_MARCHING_CUBES && method != HEWN_METHOD_NETS)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc or nets, not by %s",
-                         hewn_method_name(method) ? hewn_method_name(method) : "another method");
-    if (method == HEWN_METHOD_NETS && desc->open)
-        return hewn_fail(
-            error, HEWN_INVALID_ARGUMENT,
-            "nets close the surface at the border: their faces lie across it; mc33 and mc can leave it open");
+    if (!hewn_method_name(method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc, nets or dc");
+    for (int axis = 0; axis < 3 && desc->open; axis++)
+        if (volume->dims[axis] == 1)
+            return hewn_fail(error, HEWN_BAD_INPUT,
+                             "a volume of one slice has a surface around that slice only, so it cannot be left open");
     return HEWN_OK;
 }
 
@@ -135,14 +135,15 @@ static void set_field(hewn_lattice *lattice, const hewn_volume_extract_desc *des
     lattice->level = (desc->iso - volume->intercept) / volume->slope;
     lattice->rise = volume->slope < 0 ? -1 : 1;
     lattice->first = hewn_volume_frame_size(volume) * desc->frame;
-    lattice->normals = !desc->no_normals;
+    lattice->normals = !desc->no_normals || lattice->planes;
 }
 
 static hewn_result lay(hewn_volume_extraction *run, hewn_error *error)
 {
     hewn_lattice *lattice = &run->lattice;
     const hewn_volume *volume = lattice->volume;
-    lattice->rim = run->desc->open ? 0 : 1;
+    lattice->repeats = run->desc->open && lattice->dual;
+    lattice->rim = run->desc->open && !lattice->dual ? 0 : 1;
     for (int axis = 0; axis < 3; axis++) {
         lattice->dims[axis] = volume->dims[axis] + 2 * lattice->rim;
         run->stats.cells[axis] = volume->dims[axis] - 1;
@@ -162,14 +163,15 @@ hewn_result hewn_volume_extraction_begin(const hewn_volume *volume, const hewn_v
     *run = (hewn_volume_extraction){.desc = desc, .lattice = {.volume = volume}, .begin = hewn_clock_now()};
     HEWN_TRY(check(volume, desc, method, error));
     HEWN_TRY(hewn_progress_report(desc->progress, "extract", 0, error));
+    lattice->dual = hewn_method_is_dual(method);
+    lattice->planes = method == HEWN_METHOD_DC;
     set_field(lattice, desc);
-    lattice->nets = method == HEWN_METHOD_NETS;
     HEWN_TRY(set_place(lattice, desc->place, error));
     HEWN_TRY(lay(run, error));
     lattice->flipped = method == HEWN_METHOD_MC33 && lattice->above;
-    hewn_result result = method == HEWN_METHOD_MC33   ? hewn_mc33_table_derive(&run->table, error)
-                         : method == HEWN_METHOD_NETS ? hewn_nets_table_make(&run->table, error)
-                                                      : take_marching_cubes(&run->table, error);
+    hewn_result result = method == HEWN_METHOD_MC33 ? hewn_mc33_table_derive(&run->table, error)
+                         : lattice->dual            ? hewn_lattice_dual_table_make(&run->table, error)
+                                                    : take_marching_cubes(&run->table, error);
     lattice->table = run->table.words;
     run->stats.method = method;
     run->stats.below = !lattice->above;
@@ -238,52 +240,66 @@ hewn_result hewn_volume_extraction_explain_empty(const hewn_volume_extraction *r
     return hewn_fail(error, HEWN_BAD_INPUT, "there is no surface at the value %g", run->desc->iso);
 }
 
-/* --- the whole ---------------------------------------------------------------------------------------------------- */
+/* --- the mesh ----------------------------------------------------------------------------------------------------- */
 
-static hewn_result allocate(const hewn_lattice *lattice, uint64_t vertices, uint64_t triangles, hewn_triangles *out,
-                            hewn_error *error)
+static hewn_result allocate(uint64_t vertices, uint64_t triangles, bool normals, hewn_triangles *out, hewn_error *error)
 {
     out->vertex_count = vertices;
     out->triangle_count = triangles;
     out->positions = hewn_alloc(out->vertex_count, 3 * sizeof *out->positions);
-    out->normals = lattice->normals ? hewn_alloc(out->vertex_count, 3 * sizeof *out->normals) : NULL;
+    out->normals = normals ? hewn_alloc(out->vertex_count, 3 * sizeof *out->normals) : NULL;
     out->indices = hewn_alloc(out->triangle_count, 3 * sizeof *out->indices);
-    if (out->positions && out->indices && (out->normals || !lattice->normals))
+    if (out->positions && out->indices && (out->normals || !normals))
         return HEWN_OK;
     return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu vertices and %llu triangles",
                      (unsigned long long)out->vertex_count, (unsigned long long)out->triangle_count);
 }
 
+/* Parts have no stages of their own. */
+static hewn_result end_vertices(hewn_volume_extraction *run, hewn_error *error)
+{
+    return run->in_parts ? HEWN_OK : hewn_volume_extraction_stage(run, "vertices", 0.8, error);
+}
+
 /* Crossings first, then vertices in cells and quads between these. */
-static hewn_result make_nets(hewn_volume_extraction *run, hewn_triangles *out, hewn_error *error)
+static hewn_result emit_dual(hewn_volume_extraction *run, uint64_t first, hewn_triangles *out, hewn_error *error)
 {
     hewn_lattice *lattice = &run->lattice;
+    const uint64_t count = lattice->reached - lattice->before.vertices;
     hewn_triangles crossings = {0};
-    hewn_result result = allocate(lattice, lattice->after.vertices, 0, &crossings, error);
+    hewn_result result = allocate(count, 0, lattice->normals, &crossings, error);
     if (result == HEWN_OK)
-        result = allocate(lattice, lattice->after.centres, 2 * lattice->after.vertices, out, error);
+        result =
+            allocate(lattice->after.centres - lattice->before.centres, 2 * count, !run->desc->no_normals, out, error);
     if (result == HEWN_OK) {
         hewn_lattice_emit_vertices(lattice, &crossings);
         lattice->crossings = &crossings;
         hewn_lattice_emit_triangles(lattice, out);
-        lattice->crossings = NULL;
-        result = hewn_volume_extraction_stage(run, "vertices", 0.8, error);
+        result = end_vertices(run, error);
     }
+    if (result == HEWN_OK)
+        hewn_lattice_dual_cut(lattice, first, lattice->after.vertices, out);
+    lattice->crossings = NULL;
     hewn_triangles_destroy(&crossings);
-    HEWN_TRY(result);
-    hewn_nets_cut_quads(lattice, out);
-    return HEWN_OK;
+    return result;
 }
 
-static hewn_result make_surface(hewn_volume_extraction *run, hewn_triangles *out, hewn_error *error)
+hewn_result hewn_volume_extraction_emit(hewn_volume_extraction *run, uint64_t first, hewn_triangles *out,
+                                        hewn_error *error)
 {
     const hewn_lattice *lattice = &run->lattice;
-    HEWN_TRY(allocate(lattice, lattice->after.vertices + lattice->after.centres, lattice->after.triangles, out, error));
+    const hewn_lattice_sums *before = &lattice->before, *after = &lattice->after;
+    if (lattice->dual)
+        return emit_dual(run, first, out, error);
+    HEWN_TRY(allocate(lattice->reached - before->vertices + after->centres - before->centres,
+                      after->triangles - before->triangles, lattice->normals, out, error));
     hewn_lattice_emit_vertices(lattice, out);
-    HEWN_TRY(hewn_volume_extraction_stage(run, "vertices", 0.8, error));
+    HEWN_TRY(end_vertices(run, error));
     hewn_lattice_emit_triangles(lattice, out);
     return HEWN_OK;
 }
+
+/* --- the whole ---------------------------------------------------------------------------------------------------- */
 
 static hewn_result run_stages(hewn_volume_extraction *run, hewn_triangles *out, hewn_error *error)
 {
@@ -297,9 +313,9 @@ static hewn_result run_stages(hewn_volume_extraction *run, hewn_triangles *out, 
     run->stats.decided_cells = lattice->decided_cells;
     run->stats.cap_vertices = lattice->cap_vertices;
     HEWN_TRY(hewn_volume_extraction_stage(run, "count", 0.5, error));
-    if (lattice->nets ? lattice->after.vertices == 0 : lattice->after.triangles == 0)
+    if (lattice->dual ? lattice->after.vertices == 0 : lattice->after.triangles == 0)
         return hewn_volume_extraction_explain_empty(run, error);
-    HEWN_TRY(lattice->nets ? make_nets(run, out, error) : make_surface(run, out, error));
+    HEWN_TRY(hewn_volume_extraction_emit(run, 0, out, error));
     HEWN_TRY(hewn_volume_extraction_stage(run, "triangles", run->desc->keep ? 0.9 : 1, error));
     if (!run->desc->keep)
         return HEWN_OK;

@@ -1,5 +1,8 @@
 /* A volume's mesh in parts, slabs of slices. A first pass counts what each slice has; then it is known how many
- * vertices lie on edges, which is where those in cells begin, and how many slices a part may have. */
+ * vertices lie on edges, which is where those in cells begin, and how many slices a part may have.
+ *
+ * Quads of dual meshes lie between cells of their slice and of the one before it. So a part's slab begins a slice
+ * before the part, and what that slice has is found twice. */
 #include <string.h>
 
 #include "base/alloc.h"
@@ -30,13 +33,14 @@ static uint64_t kept_bytes(const stream *of)
     return of->samples + signs + table + patches + (of->sink->bytes ? of->sink->bytes(of->sink->user, NULL) : 0);
 }
 
-/* Samples that a slab looks at: normals reach one slice farther than edges. */
+/* Samples that a slab looks at: normals reach one slice farther than edges, planes that are to meet two. */
 static void find_samples(const stream *of, uint32_t begin, uint32_t end, uint32_t range[2])
 {
     const hewn_lattice *lattice = &of->run.lattice;
-    uint32_t all = lattice->volume->dims[2], first = begin > 1 + lattice->rim ? begin - 1 - lattice->rim : 0;
+    const uint32_t all = lattice->volume->dims[2], reach = lattice->planes ? 2 : 1;
+    const uint32_t first = begin > reach + lattice->rim ? begin - reach - lattice->rim : 0;
     range[0] = first < all ? first : all;
-    range[1] = all - range[0] > end - begin + 4 ? range[0] + (end - begin) + 4 : all;
+    range[1] = all - range[0] > end - begin + 2 + 2 * reach ? range[0] + (end - begin) + 2 + 2 * reach : all;
 }
 
 static uint64_t file_bytes(const stream *of, uint32_t begin, uint32_t end)
@@ -57,32 +61,54 @@ static void forget(const stream *of, uint32_t begin, uint32_t end)
     hewn_volume_forget(of->run.lattice.volume, of->run.desc->frame, range[0], range[1]);
 }
 
-/* What a slab's mesh has, with vertices of the slice after it, from the first pass. */
-static hewn_lattice_sums mesh_of(const stream *of, uint32_t begin, uint32_t end)
+/* Where the slab of a part begins. */
+static uint32_t slab_begin(const stream *of, uint32_t begin)
 {
-    const hewn_lattice_sums *a = &of->before[begin], *b = &of->before[end];
+    return of->run.lattice.dual && begin > 0 ? begin - 1 : begin;
+}
+
+/* What the mesh has before a slice: of dual meshes crossings are quads, and not vertices. */
+static hewn_lattice_sums mesh_before(const stream *of, uint32_t slice)
+{
+    const hewn_lattice_sums *all = &of->before[slice];
+    return of->run.lattice.dual ? (hewn_lattice_sums){0, all->centres, 2 * all->vertices} : *all;
+}
+
+/* What a part's slab has, with crossings of the slice after it, from the first pass. */
+static hewn_lattice_sums slab_of(const stream *of, uint32_t begin, uint32_t end)
+{
+    const hewn_lattice_sums *a = &of->before[slab_begin(of, begin)], *b = &of->before[end];
     const hewn_lattice_sums *beyond = &of->before[end < of->slices ? end + 1 : end];
-    return (hewn_lattice_sums){beyond->vertices - a->vertices, b->centres - a->centres, b->triangles - a->triangles};
+    hewn_lattice_sums slab = {beyond->vertices - a->vertices, b->centres - a->centres, b->triangles - a->triangles};
+    if (of->run.lattice.dual)
+        slab.triangles = 2 * slab.vertices;
+    return slab;
 }
 
-static uint64_t mesh_bytes(const stream *of, uint32_t begin, uint32_t end)
+/* While it is made, and what is left of it for the sink. */
+static uint64_t mesh_bytes(const stream *of, uint32_t begin, uint32_t end, bool made)
 {
-    hewn_lattice_sums mesh = mesh_of(of, begin, end);
-    return (of->run.lattice.normals ? 24 : 12) * (mesh.vertices + mesh.centres) + 12 * mesh.triangles;
-}
-
-/* Signs and rows are gone when the sink takes a part. */
-static uint64_t emission_bytes(const stream *of, uint32_t begin, uint32_t end)
-{
-    hewn_lattice_sums mesh = mesh_of(of, begin, end);
-    uint64_t sink = SINK_VERTEX * (mesh.vertices + mesh.centres) + SINK_TRIANGLE * mesh.triangles;
-    uint64_t slab = hewn_volume_extraction_bytes(&of->run, begin, end);
-    return mesh_bytes(of, begin, end) + file_bytes(of, begin, end) + (sink > slab ? sink : slab);
+    const hewn_volume_extraction *run = &of->run;
+    const hewn_lattice_sums slab = slab_of(of, begin, end);
+    const uint64_t crossing = run->lattice.normals ? 24 : 12, vertex = run->desc->no_normals ? 12 : 24;
+    return (made && run->lattice.dual ? 0 : crossing * slab.vertices) + vertex * slab.centres + 12 * slab.triangles;
 }
 
 static uint64_t count_bytes(const stream *of, uint32_t begin, uint32_t end)
 {
     return hewn_volume_extraction_bytes(&of->run, begin, end) + file_bytes(of, begin, end);
+}
+
+/* Signs and rows, and the crossings of dual meshes, are gone when the sink takes a part. */
+static uint64_t emission_bytes(const stream *of, uint32_t begin, uint32_t end)
+{
+    const uint32_t from = slab_begin(of, begin);
+    const hewn_lattice_sums slab = slab_of(of, begin, end);
+    const uint64_t vertices = slab.centres + (of->run.lattice.dual ? 0 : slab.vertices);
+    const uint64_t sink = mesh_bytes(of, begin, end, true) + file_bytes(of, from, end) + SINK_VERTEX * vertices +
+                          SINK_TRIANGLE * slab.triangles;
+    const uint64_t making = mesh_bytes(of, begin, end, false) + count_bytes(of, from, end);
+    return sink > making ? sink : making;
 }
 
 static hewn_result note(stream *of, uint64_t bytes, hewn_error *error)
@@ -148,56 +174,55 @@ static hewn_result count_all(stream *of, hewn_error *error)
 
 /* --- the second pass ---------------------------------------------------------------------------------------------- */
 
-static hewn_result emit(stream *of, hewn_triangles *out, hewn_error *error)
-{
-    hewn_lattice *lattice = &of->run.lattice;
-    hewn_lattice_find_signs(lattice);
-    HEWN_TRY(hewn_lattice_count(lattice, error));
-    uint64_t vertices = lattice->reached - lattice->before.vertices + lattice->after.centres - lattice->before.centres;
-    uint64_t triangles = lattice->after.triangles - lattice->before.triangles;
-    out->positions = hewn_alloc(vertices, 3 * sizeof *out->positions);
-    out->normals = lattice->normals ? hewn_alloc(vertices, 3 * sizeof *out->normals) : NULL;
-    out->indices = hewn_alloc(triangles, 3 * sizeof *out->indices);
-    if (!out->positions || !out->indices || (lattice->normals && !out->normals))
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu vertices and %llu triangles",
-                         (unsigned long long)vertices, (unsigned long long)triangles);
-    hewn_lattice_emit_vertices(lattice, out);
-    hewn_lattice_emit_triangles(lattice, out);
-    return HEWN_OK;
-}
-
-static hewn_mesh_part make_part(stream *of, const hewn_triangles *mesh)
+static hewn_mesh_part make_part(stream *of, uint32_t begin, uint32_t end, const hewn_triangles *mesh)
 {
     const hewn_lattice *lattice = &of->run.lattice;
-    const hewn_lattice_sums *before = &lattice->before, *after = &lattice->after;
-    uint64_t centres = lattice->reached - before->vertices;
+    const hewn_lattice_sums *slab = &lattice->before;
+    const hewn_lattice_sums before = mesh_before(of, begin), after = mesh_before(of, end);
+    const uint64_t on_edges = lattice->dual ? 0 : lattice->vertex_count;
+    /* Places in the slab's mesh: of dual ones it begins earlier. */
+    const uint64_t centre = (lattice->dual ? 0 : lattice->reached - slab->vertices) + before.centres - slab->centres;
+    const uint64_t triangle = before.triangles - (lattice->dual ? 2 * slab->vertices : slab->triangles);
     const float *normals = mesh->normals;
     hewn_mesh_part part = {.open = &of->open};
-    part.vertices[0] =
-        (hewn_vertex_run){before->vertices, after->vertices - before->vertices, mesh->positions, normals};
-    part.vertices[1] = (hewn_vertex_run){lattice->vertex_count + before->centres, after->centres - before->centres,
-                                         mesh->positions + 3 * centres, normals ? normals + 3 * centres : NULL};
-    part.triangles[0] = (hewn_triangle_run){before->triangles, after->triangles - before->triangles, mesh->indices};
-    /* Cells to come name no vertex of the slices that are done. */
-    of->open = (hewn_number_run){after->vertices, lattice->vertex_count - after->vertices};
+    part.vertices[0] = (hewn_vertex_run){before.vertices, after.vertices - before.vertices, mesh->positions, normals};
+    part.vertices[1] = (hewn_vertex_run){on_edges + before.centres, after.centres - before.centres,
+                                         mesh->positions + 3 * centre, normals ? normals + 3 * centre : NULL};
+    part.triangles[0] =
+        (hewn_triangle_run){before.triangles, after.triangles - before.triangles, mesh->indices + 3 * triangle};
+    /* Cells to come name no vertex on edges of the slices that are done; quads do those in the last one's cells. */
+    of->open = (hewn_number_run){after.vertices, on_edges - after.vertices};
+    if (lattice->dual) {
+        const uint64_t first = of->before[end - 1].centres;
+        of->open = (hewn_number_run){first, end < of->slices ? of->before[of->slices].centres - first : 0};
+    }
     part.open_count = of->open.count > 0;
     return part;
+}
+
+static hewn_result make_slab(stream *of, uint32_t begin, uint32_t end, hewn_triangles *out, hewn_error *error)
+{
+    hewn_lattice *lattice = &of->run.lattice;
+    const uint32_t from = slab_begin(of, begin);
+    HEWN_TRY(note(of, kept_bytes(of) + mesh_bytes(of, begin, end, false) + count_bytes(of, from, end), error));
+    HEWN_TRY(hewn_volume_extraction_lay(&of->run, from, end, error));
+    lattice->before = of->before[from];
+    hewn_lattice_find_signs(lattice);
+    HEWN_TRY(hewn_lattice_count(lattice, error));
+    HEWN_TRY(hewn_volume_extraction_emit(&of->run, of->before[begin].vertices, out, error));
+    forget(of, from, end);
+    hewn_volume_extraction_free_slab(&of->run);
+    return HEWN_OK;
 }
 
 /* Emits a slab; `*fits` tells whether the sink may take it. */
 static hewn_result emit_part(stream *of, uint32_t begin, uint32_t end, bool *fits, hewn_error *error)
 {
-    hewn_lattice *lattice = &of->run.lattice;
     hewn_triangles mesh = {0};
-    uint64_t bytes = kept_bytes(of) + mesh_bytes(of, begin, end), most = of->run.desc->max_memory;
-    HEWN_TRY(note(of, bytes + count_bytes(of, begin, end), error));
-    HEWN_TRY(hewn_volume_extraction_lay(&of->run, begin, end, error));
-    lattice->before = of->before[begin];
-    hewn_result result = emit(of, &mesh, error);
-    forget(of, begin, end);
+    uint64_t bytes = kept_bytes(of) + mesh_bytes(of, begin, end, true), most = of->run.desc->max_memory;
+    hewn_result result = make_slab(of, begin, end, &mesh, error);
     if (result == HEWN_OK) {
-        hewn_volume_extraction_free_slab(&of->run);
-        hewn_mesh_part part = make_part(of, &mesh);
+        hewn_mesh_part part = make_part(of, begin, end, &mesh);
         if (of->sink->bytes)
             bytes += of->sink->bytes(of->sink->user, &part) - of->sink->bytes(of->sink->user, NULL);
         *fits = most == 0 || bytes <= most || end - begin == 1;
@@ -209,17 +234,23 @@ static hewn_result emit_part(stream *of, uint32_t begin, uint32_t end, bool *fit
     return result;
 }
 
+static bool has_nothing(const stream *of, uint32_t begin, uint32_t end)
+{
+    const hewn_lattice_sums a = mesh_before(of, begin), b = mesh_before(of, end);
+    return a.vertices == b.vertices && a.centres == b.centres && a.triangles == b.triangles;
+}
+
 static hewn_result emit_all(stream *of, hewn_error *error)
 {
     uint32_t most = of->slices;
     for (uint32_t begin = 0, end; begin < of->slices;) {
         bool fits = true;
         end = find_end(of, begin, most, emission_bytes);
-        if (of->before[end].vertices == of->before[begin].vertices) /* nothing is there: no part either */
-            while (end < of->slices && of->before[end + 1].vertices == of->before[begin].vertices)
-                end++;
+        const bool nothing = has_nothing(of, begin, end); /* no part either */
+        while (nothing && end < of->slices && has_nothing(of, begin, end + 1))
+            end++;
         HEWN_TRY(hewn_progress_report(of->run.desc->progress, "extract", 0.4 + 0.6 * begin / of->slices, error));
-        if (of->before[end].vertices > of->before[begin].vertices) {
+        if (!nothing) {
             HEWN_TRY(emit_part(of, begin, end, &fits, error));
             of->run.stats.parts += fits;
         }
@@ -243,15 +274,15 @@ static hewn_result run_passes(stream *of, hewn_error *error)
     HEWN_TRY(note(of, volume->blocks ? run->lattice.blocks->peak : 0, error));
     HEWN_TRY(count_all(of, error));
     HEWN_TRY(hewn_volume_extraction_stage(run, "count", 0.4, error));
-    const hewn_lattice_sums *all = &of->before[of->slices];
-    if (all->triangles == 0)
+    const hewn_lattice_sums all = mesh_before(of, of->slices);
+    if (all.triangles == 0)
         return hewn_volume_extraction_explain_empty(run, error);
-    if (all->vertices + all->centres >= UINT32_MAX)
+    if (all.vertices + all.centres >= UINT32_MAX)
         return hewn_fail(error, HEWN_LIMIT, "the surface needs %llu vertices, more than indices can name",
-                         (unsigned long long)(all->vertices + all->centres));
+                         (unsigned long long)(all.vertices + all.centres));
     HEWN_TRY(emit_all(of, error));
-    run->stats.vertices = all->vertices + all->centres;
-    run->stats.triangles = all->triangles;
+    run->stats.vertices = all.vertices + all.centres;
+    run->stats.triangles = all.triangles;
     return hewn_volume_extraction_stage(run, "extract", 1, error);
 }
 
@@ -259,10 +290,8 @@ hewn_result hewn_volume_extract_parts(const hewn_volume *volume, const hewn_volu
                                       const hewn_mesh_sink *sink, hewn_volume_extract_stats *stats, hewn_error *error)
 {
     stream of = {.sink = sink};
-    hewn_result result =
-        desc->method == HEWN_METHOD_NETS
-            ? hewn_fail(error, HEWN_INVALID_ARGUMENT, "nets are made in one piece; mc33 and mc come in parts")
-            : hewn_volume_extraction_begin(volume, desc, &of.run, error);
+    hewn_result result = hewn_volume_extraction_begin(volume, desc, &of.run, error);
+    of.run.in_parts = true;
     if (result == HEWN_OK)
         result = run_passes(&of, error);
     hewn_volume_extraction_clear(&of.run);

@@ -43,3 +43,34 @@ void hewn_frame_declare(hewn_frame frame, hewn_model *model)
         model->up_known = true;
     }
 }
+
+hewn_result hewn_frame_check_space(hewn_mesh_format to, hewn_space space, const hewn_unit *unit, hewn_error *error)
+{
+    if (to == HEWN_MESH_GLB && space != HEWN_SPACE_DEFAULT && space != HEWN_SPACE_GLTF)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
+                         "GLB files are always in glTF's space, not in %s; .stl, .obj, .ply, .off and .3mf can be",
+                         hewn_space_name(space) ? hewn_space_name(space) : "another");
+    if (to == HEWN_MESH_GLB && unit && unit != hewn_unit_find("m"))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB is always in metres, not in %s", unit->name);
+    if (space == HEWN_SPACE_VOXEL && unit)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "in the space of voxels lengths are voxels, not %s", unit->name);
+    if (to == HEWN_MESH_3MF && unit && strcmp(unit->name, "km") == 0)
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF cannot be in km");
+    return HEWN_OK;
+}
+
+hewn_space hewn_frame_choose_space(hewn_mesh_format to, hewn_space wanted, const hewn_volume *volume)
+{
+    if (wanted != HEWN_SPACE_DEFAULT)
+        return wanted;
+    return to == HEWN_MESH_GLB ? HEWN_SPACE_GLTF : volume->anatomical ? HEWN_SPACE_RAS : HEWN_SPACE_WORLD;
+}
+
+const char *hewn_frame_space_tag(hewn_space space, bool anatomical)
+{
+    if (space == HEWN_SPACE_RAS)
+        return "RAS";
+    if (space == HEWN_SPACE_LPS)
+        return "LPS";
+    return space == HEWN_SPACE_GLTF && anatomical ? "x left, y head, z front" : NULL;
+}

@@ -1,6 +1,7 @@
 #include "pipeline/label_job.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -23,6 +24,7 @@ typedef struct label_job {
     hewn_frame wanted; /* to write in */
     hewn_label_table names;
     hewn_volume volume;
+    hewn_body_choice keep; /* in the unit of the mesh */
     hewn_label_mesh mesh;
     hewn_model frame;   /* unit and axes of the mesh, without anything else */
     hewn_model *shells; /* of each label, where they go together into a GLB */
@@ -43,6 +45,7 @@ static hewn_result check(label_job *job, hewn_error *error)
     const hewn_label_job_desc *desc = job->desc;
     hewn_label_report *report = job->report;
     HEWN_TRY(hewn_label_target_find(desc, &job->target, &report->to, error));
+    HEWN_TRY(hewn_frame_check_space(report->to, desc->space, desc->to_unit, error));
     HEWN_TRY(
         hewn_frame_choose(job->report->to, (hewn_frame){job->desc->to_unit, job->desc->to_up}, &job->wanted, error));
     if (desc->report && strcmp(desc->report, desc->output) == 0)
@@ -81,6 +84,35 @@ static hewn_result load(label_job *job, hewn_error *error)
     return HEWN_OK;
 }
 
+/* Labels are meshed where they shall be: what is wanted takes the place of the volume's world. */
+static hewn_result place(label_job *job, hewn_error *error)
+{
+    const hewn_label_job_desc *desc = job->desc;
+    hewn_label_report *report = job->report;
+    hewn_volume *volume = &job->volume;
+    double to[16];
+    report->space = hewn_frame_choose_space(report->to, desc->space, volume);
+    const bool patient = report->space == HEWN_SPACE_RAS || report->space == HEWN_SPACE_LPS;
+    const bool voxels = report->space == HEWN_SPACE_VOXEL, gltf = report->space == HEWN_SPACE_GLTF;
+    const double size = fabs(hewn_volume_determinant(volume));
+    hewn_result result = hewn_volume_bring(volume, report->space, 1, to, error);
+    if (result != HEWN_OK)
+        return hewn_blame_input(result, desc->input, error);
+    if (desc->keep)
+        job->keep = *desc->keep;
+    if (voxels)
+        job->keep.least_volume /= size;
+    memcpy(volume->to_world, to, sizeof to);
+    const hewn_unit *unit = desc->unit ? desc->unit : volume->unit;
+    report->unit_assumed = !unit && volume->anatomical && !voxels;
+    job->frame.unit = voxels ? NULL : report->unit_assumed ? hewn_unit_find("mm") : unit;
+    job->frame.up = gltf ? HEWN_AXIS_PLUS_Y : HEWN_AXIS_PLUS_Z;
+    job->frame.up_known = volume->anatomical && (patient || gltf);
+    if (gltf && !job->wanted.unit)
+        job->wanted.unit = hewn_unit_find("m");
+    return HEWN_OK;
+}
+
 static hewn_result mesh(label_job *job, hewn_error *error)
 {
     const hewn_label_job_desc *desc = job->desc;
@@ -88,7 +120,7 @@ static hewn_result mesh(label_job *job, hewn_error *error)
                              .labels = desc->labels,
                              .label_count = desc->label_count,
                              .relaxations = desc->relaxations,
-                             .keep = desc->keep,
+                             .keep = desc->keep ? &job->keep : NULL,
                              .progress = desc->progress};
     hewn_stage_begin(&job->stages);
     hewn_result result = hewn_labels_mesh(&job->volume, &label, &job->mesh, error);
@@ -96,13 +128,7 @@ static hewn_result mesh(label_job *job, hewn_error *error)
         return hewn_blame_input(result, desc->input, error);
     job->report->relaxations = desc->relaxations;
     job->report->islands = job->mesh.islands;
-    /* The samples are not looked at any more. */
-    const hewn_unit *unit = desc->unit ? desc->unit : job->volume.unit;
-    job->report->unit_assumed = !unit && job->volume.anatomical;
-    job->frame.unit = job->report->unit_assumed ? hewn_unit_find("mm") : unit;
-    job->frame.up = HEWN_AXIS_PLUS_Z;
-    job->frame.up_known = job->volume.anatomical;
-    hewn_volume_destroy(&job->volume);
+    hewn_volume_destroy(&job->volume); /* its samples are not looked at any more */
     hewn_stage_end(&job->stages, "label");
     return HEWN_OK;
 }
@@ -286,6 +312,14 @@ static hewn_result prove_all(label_job *job, hewn_error *error)
 /* --- writing -------------------------------------------------------------------------------------------------------
  */
 
+/* None where the axes were turned once more. */
+static const char *tag(const label_job *job)
+{
+    const hewn_label_report *report = job->report;
+    const hewn_axis up = report->space == HEWN_SPACE_GLTF ? HEWN_AXIS_PLUS_Y : HEWN_AXIS_PLUS_Z;
+    return report->up_known && job->frame.up != up ? NULL : hewn_frame_space_tag(report->space, report->anatomical);
+}
+
 static hewn_result write_each(label_job *job, hewn_error *error)
 {
     const hewn_label_job_desc *desc = job->desc;
@@ -299,9 +333,9 @@ static hewn_result write_each(label_job *job, hewn_error *error)
         if (report->to == HEWN_MESH_GLB) {
             hewn_object object = {.model = &shell, .name = fact->name};
             memcpy(object.color, fact->color, sizeof object.color);
-            result = hewn_objects_write_glb(&object, 1, &fact->label, fact->path, NULL, error);
+            result = hewn_objects_write_glb(&object, 1, &fact->label, tag(job), fact->path, NULL, error);
         } else {
-            hewn_write_desc write = {.format = report->to, .name = fact->name};
+            hewn_write_desc write = {.format = report->to, .name = fact->name, .space = tag(job)};
             result = hewn_model_write(&shell, fact->path, &write, error);
         }
         hewn_model_destroy(&shell);
@@ -324,7 +358,7 @@ static hewn_result write_glb(label_job *job, hewn_error *error)
         memcpy(objects[n].color, report->labels[n].color, sizeof objects[n].color);
     }
     if (result == HEWN_OK)
-        result = hewn_objects_write_glb(objects, report->label_count, job->mesh.labels, job->desc->output,
+        result = hewn_objects_write_glb(objects, report->label_count, job->mesh.labels, tag(job), job->desc->output,
                                         job->desc->progress, error);
     for (uint32_t n = 0; job->shells && n < report->label_count; n++)
         hewn_model_destroy(&job->shells[n]);
@@ -357,7 +391,7 @@ static hewn_result write_together(label_job *job, hewn_error *error)
     model.up = job->frame.up;
     model.up_known = job->frame.up_known;
     hewn_path_stem(strcmp(desc->output, "-") == 0 ? desc->input : desc->output, name, sizeof name);
-    hewn_write_desc write = {.format = report->to, .name = name, .progress = desc->progress};
+    hewn_write_desc write = {.format = report->to, .name = name, .space = tag(job), .progress = desc->progress};
     hewn_result result = hewn_model_write(&model, desc->output, &write, error);
     hewn_model_destroy(&model);
     return result;
@@ -397,6 +431,7 @@ static hewn_result run(label_job *job, hewn_error *error)
 {
     HEWN_TRY(check(job, error));
     HEWN_TRY(load(job, error));
+    HEWN_TRY(place(job, error));
     HEWN_TRY(mesh(job, error));
     HEWN_TRY(check_together(job, error));
     HEWN_TRY(name_labels(job, error));

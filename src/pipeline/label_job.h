@@ -24,7 +24,8 @@ typedef struct hewn_label_job_desc {
     hewn_mesh_format to; /* HEWN_MESH_UNKNOWN: from the output's extension; in a folder STL */
     bool complex;        /* write the mesh that the shells share, with the labels on both sides of each face */
     const hewn_unit
-        *unit; /* what the volume is in, whatever it says; NULL: as it says, else mm where it is anatomical */
+        *unit;        /* what the volume is in, whatever it says; NULL: as it says, else mm where it is anatomical */
+    hewn_space space; /* to write in; HEWN_SPACE_DEFAULT: glTF's in GLB, else RAS, or the volume's world */
     const hewn_unit *to_unit;
     const hewn_axis *to_up;
     const char *report; /* file for the report as JSON; "-" is standard output; NULL: none */
@@ -56,7 +57,7 @@ typedef struct hewn_label_report {
     hewn_body_counts islands; /* all 0 where no choice of them was asked for */
     hewn_smooth_report smooth;
     hewn_simplify_report simplify;
-    hewn_conversion conversion;  /* from the volume's world to the output */
+    hewn_conversion conversion;  /* from the volume's unit, in `space`, to the output */
     hewn_report_stage stages[8]; /* load, label, smooth, simplify, certify, write */
     uint64_t peak_host_bytes;
     double seconds;
@@ -64,6 +65,7 @@ typedef struct hewn_label_report {
     uint32_t relaxations;
     hewn_smooth_method smooth_method; /* where it was smoothed */
     bool smoothed, simplified;
+    hewn_space space;
     bool anatomical;
     bool unit_assumed; /* nobody said the unit, and millimetres were taken */
     bool up_known;

@@ -40,6 +40,7 @@ static void print_conversion(hewn_json *json, const hewn_label_report *report)
 {
     const hewn_conversion *done = &report->conversion;
     hewn_json_string(json, "world", report->anatomical ? "RAS" : NULL);
+    hewn_json_string(json, "space", hewn_space_name(report->space));
     hewn_json_object(json, "conversion");
     hewn_json_string(json, "unit_before", done->unit_before ? done->unit_before->name : NULL);
     hewn_json_string(json, "unit_after", done->unit_after ? done->unit_after->name : NULL);

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "geom/distinct.h"
+#include "pipeline/frame.h"
 #include "pipeline/mesh_parts.h"
 #include "pipeline/paths.h"
 #include "pipeline/report.h"
@@ -27,39 +28,10 @@ typedef struct volume_job {
 
 /* --- before any work ---------------------------------------------------------------------------------------------- */
 
-/* GLB is in metres with +Y up; a space has a meaning of its own for axes, so 3MF's +Z is no matter. */
-static hewn_result check_space(const volume_job *job, hewn_error *error)
-{
-    const hewn_volume_job_desc *desc = job->desc;
-    const hewn_unit *metre = hewn_unit_find("m");
-    bool glb = job->report->to == HEWN_MESH_GLB;
-    if (glb && desc->space != HEWN_SPACE_DEFAULT && desc->space != HEWN_SPACE_GLTF)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "GLB files are always in glTF's space, not in %s; .stl, .obj, .ply, .off and .3mf can be",
-                         hewn_space_name(desc->space) ? hewn_space_name(desc->space) : "another");
-    if (glb && desc->to_unit && desc->to_unit != metre)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "GLB is always in metres, not in %s", desc->to_unit->name);
-    if (desc->space == HEWN_SPACE_VOXEL && desc->to_unit)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "in the space of voxels lengths are voxels, not %s",
-                         desc->to_unit->name);
-    if (job->report->to == HEWN_MESH_3MF && desc->to_unit && strcmp(desc->to_unit->name, "km") == 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "3MF cannot be in km");
-    return HEWN_OK;
-}
-
 static hewn_result check_method(const hewn_volume_job_desc *desc, hewn_error *error)
 {
-    const bool known = desc->method == HEWN_METHOD_DEFAULT || desc->method == HEWN_METHOD_MC33 ||
-                       desc->method == HEWN_METHOD_MARCHING_CUBES || desc->method == HEWN_METHOD_NETS;
-    if (!known)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc or nets, not by %s",
-                         hewn_method_name(desc->method) ? hewn_method_name(desc->method) : "another method");
-    if (desc->method == HEWN_METHOD_NETS && desc->open)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "nets close the surface at the border; mc33 and mc can leave it open");
-    if (desc->method == HEWN_METHOD_NETS && desc->max_memory > 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "nets are made in one piece; mc33 and mc keep to a limit of memory");
+    if (desc->method != HEWN_METHOD_DEFAULT && !hewn_method_name(desc->method))
+        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "volumes are meshed by mc33, mc, nets or dc");
     return HEWN_OK;
 }
 
@@ -69,7 +41,7 @@ static hewn_result check(volume_job *job, hewn_error *error)
     if (!desc->input || !desc->output)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a job needs an input and an output");
     HEWN_TRY(hewn_output_format(desc->output, desc->format, &job->report->to, error));
-    HEWN_TRY(check_space(job, error));
+    HEWN_TRY(hewn_frame_check_space(job->report->to, desc->space, desc->to_unit, error));
     HEWN_TRY(check_method(desc, error));
     if (desc->open && desc->keep)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT,
@@ -159,11 +131,7 @@ static hewn_result choose_place(volume_job *job, hewn_error *error)
     const hewn_volume_job_desc *desc = job->desc;
     hewn_volume_report *report = job->report;
     const hewn_unit *unit = desc->unit ? desc->unit : job->volume.unit;
-    report->space = desc->space;
-    if (desc->space == HEWN_SPACE_DEFAULT)
-        report->space = report->to == HEWN_MESH_GLB ? HEWN_SPACE_GLTF
-                        : job->volume.anatomical    ? HEWN_SPACE_RAS
-                                                    : HEWN_SPACE_WORLD;
+    report->space = hewn_frame_choose_space(report->to, desc->space, &job->volume);
     if (report->space == HEWN_SPACE_VOXEL)
         return hewn_volume_bring(&job->volume, report->space, 1, report->place, error);
     report->unit_assumed = !unit && (job->volume.anatomical || desc->to_unit || report->space == HEWN_SPACE_GLTF);
@@ -367,7 +335,6 @@ static hewn_result write(volume_job *job, hewn_error *error)
 {
     const hewn_volume_job_desc *desc = job->desc;
     hewn_volume_report *report = job->report;
-    static const char *const tags[] = {[HEWN_SPACE_RAS] = "RAS", [HEWN_SPACE_LPS] = "LPS"};
     bool patient = report->space == HEWN_SPACE_RAS || report->space == HEWN_SPACE_LPS;
     bool known = patient || report->space == HEWN_SPACE_GLTF;
     char name[256];
@@ -378,10 +345,8 @@ static hewn_result write(volume_job *job, hewn_error *error)
                                   .unit = report->unit,
                                   .up = patient ? HEWN_AXIS_PLUS_Z : HEWN_AXIS_PLUS_Y,
                                   .unsure = !known,
-                                  .space = patient ? tags[report->space] : NULL,
+                                  .space = hewn_frame_space_tag(report->space, report->anatomical),
                                   .progress = desc->progress};
-    if (report->space == HEWN_SPACE_GLTF && report->anatomical)
-        write_desc.space = "x left, y head, z front";
     if (desc->max_memory > 0)
         write_desc.progress = hewn_mesh_parts_progress(&job->parts, desc->progress);
     HEWN_TRY(hewn_triangles_write(&job->mesh, desc->output, &write_desc, error));

@@ -7,6 +7,7 @@
 #include "base/progress.h"
 #include "geom/hausdorff.h"
 #include "hewn/check.h"
+#include "simplify/recall.h"
 
 /* The largest error by quadrics, a mean distance, is at first this share of what is allowed. Where a run came out too
  * far away, it becomes half of what it was; below the least share vertices stay as they are. Each run takes other ways
@@ -30,6 +31,13 @@ typedef struct simplify_promise {
     uint8_t *offending; /* the input's vertices that stand for vertices of the result which must not be */
 
     uint32_t (*pairs)[2];
+
+    /* What earlier runs have shown. `known`: triangles of the input and of the result that are near enough; of the
+     * input's, by the result that `proven` remembers. */
+    simplify_recall seen, proven;
+    double seen_near; /* as `seen` was looked at */
+    uint8_t *known[2];
+    uint32_t *rest; /* corners of others */
 } simplify_promise;
 
 /* --- measuring ---------------------------------------------------------------------------------------------------- */
@@ -62,6 +70,45 @@ static double diagonal(const hewn_bvh *bvh)
     return sqrt(square);
 }
 
+/* The triangles of a surface that are not known to be near enough, put into `rest`. */
+static hewn_triangle_view rest_of(simplify_promise *job, const hewn_triangle_view *view, const uint8_t *known)
+{
+    hewn_triangle_view rest = *view;
+    rest.triangle_count = 0;
+    rest.corners = job->rest;
+    for (uint64_t t = 0; t < view->triangle_count; t++)
+        if (!known[t])
+            memcpy(job->rest + 3 * rest.triangle_count++, view->corners + 3 * t, 3 * sizeof *job->rest);
+    return rest;
+}
+
+/* Marks of the rest become marks of all. */
+static void spread(const uint8_t *known, uint64_t count, uint64_t rest, uint8_t *far)
+{
+    for (uint64_t t = count; t-- > 0;)
+        far[t] = known[t] ? 0 : far[--rest];
+}
+
+/* One way, `side` as in `far`: whether all is within what is allowed. */
+static hewn_result prove(simplify_promise *job, int side, const hewn_triangle_view *from, const hewn_triangle_view *to,
+                         const hewn_bvh *bvh, hewn_reach_desc *desc, hewn_reach *out, hewn_error *error)
+{
+    uint8_t *known = job->known[side], *far = job->far[side];
+    if (side == 0)
+        HEWN_TRY(hewn_simplify_recall_near(&job->proven, to, from, job->allowed, known, error));
+    else
+        hewn_simplify_recall(&job->proven, from, known);
+    const hewn_triangle_view rest = rest_of(job, from, known);
+    desc->far = far;
+    HEWN_TRY(hewn_surface_reach(&rest, to, bvh, desc, out, error));
+    spread(known, from->triangle_count, rest.triangle_count, far);
+    if (side == 1)
+        return hewn_simplify_remember(&job->proven, from, far, error);
+    for (uint64_t t = 0; t < from->triangle_count; t++)
+        known[t] = !far[t];
+    return HEWN_OK;
+}
+
 /* Both ways. `marks`: only whether it is within what is allowed, and where not; else to a hundredth. */
 static hewn_result measure(simplify_promise *job, bool marks, hewn_error *error)
 {
@@ -74,13 +121,13 @@ static hewn_result measure(simplify_promise *job, bool marks, hewn_error *error)
         desc.floor = job->allowed;
     HEWN_TRY(hewn_progress_report(job->in->desc.progress, "measure", 0, error));
     HEWN_TRY(hewn_bvh_build(&after, &bvh, error));
-    desc.far = marks ? job->far[0] : NULL;
-    hewn_result done = hewn_surface_reach(&before, &after, &bvh, &desc, &there, error);
+    hewn_result done = marks ? prove(job, 0, &before, &after, &bvh, &desc, &there, error)
+                             : hewn_surface_reach(&before, &after, &bvh, &desc, &there, error);
     hewn_bvh_free(&bvh);
     HEWN_TRY(done);
     HEWN_TRY(hewn_progress_report(job->in->desc.progress, "measure", 0.5, error));
-    desc.far = marks ? job->far[1] : NULL;
-    HEWN_TRY(hewn_surface_reach(&after, &before, &job->bvh, &desc, &back, error));
+    HEWN_TRY(marks ? prove(job, 1, &after, &before, &job->bvh, &desc, &back, error)
+                   : hewn_surface_reach(&after, &before, &job->bvh, &desc, &back, error));
     job->report->measured = true;
     job->report->distance = fmax(there.high, back.high);
     job->report->distance_low = fmax(there.low, back.low);
@@ -100,9 +147,15 @@ static hewn_result glance(simplify_promise *job, uint64_t *count, hewn_error *er
     hewn_result done = hewn_surface_glance(&before, &after, &bvh, 0, job->allowed, near, job->far[0], &there, error);
     hewn_bvh_free(&bvh);
     HEWN_TRY(done);
-    HEWN_TRY(hewn_surface_glance(&after, &before, &job->bvh, INNER, job->allowed, near, job->far[1], &back, error));
+    if (near < job->seen_near)
+        hewn_simplify_forget(&job->seen);
+    job->seen_near = near;
+    hewn_simplify_recall(&job->seen, &after, job->known[1]);
+    const hewn_triangle_view rest = rest_of(job, &after, job->known[1]);
+    HEWN_TRY(hewn_surface_glance(&rest, &before, &job->bvh, INNER, job->allowed, near, job->far[1], &back, error));
+    spread(job->known[1], after.triangle_count, rest.triangle_count, job->far[1]);
     *count = there + back;
-    return HEWN_OK;
+    return hewn_simplify_remember(&job->seen, &after, job->far[1], error);
 }
 
 /* --- what offends ------------------------------------------------------------------------------------------------- */
@@ -182,8 +235,12 @@ static hewn_result prepare(simplify_promise *job, hewn_error *error)
     job->offending = hewn_alloc_zero(view.vertex_count, 1);
     job->far[0] = bounded ? hewn_alloc(view.triangle_count, 1) : NULL;
     job->far[1] = bounded ? hewn_alloc(view.triangle_count, 1) : NULL;
+    job->known[0] = bounded ? hewn_alloc_zero(view.triangle_count, 1) : NULL;
+    job->known[1] = bounded ? hewn_alloc_zero(view.triangle_count, 1) : NULL;
+    job->rest = bounded ? hewn_alloc(view.triangle_count, 3 * sizeof *job->rest) : NULL;
     job->pairs = desc->no_self_intersections ? hewn_alloc(MOST_PAIRS, sizeof *job->pairs) : NULL;
-    if (!in->frozen || !job->offending || (bounded && (!in->limits || !job->far[0] || !job->far[1])) ||
+    if (!in->frozen || !job->offending ||
+        (bounded && (!in->limits || !job->far[0] || !job->far[1] || !job->known[0] || !job->known[1] || !job->rest)) ||
         (desc->no_self_intersections && !job->pairs))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     if (bounded) {
@@ -250,6 +307,11 @@ hewn_result hewn_simplify_promised(simplify_input *in, simplify_result *out, hew
     hewn_bvh_free(&job.bvh);
     hewn_free(job.far[0]);
     hewn_free(job.far[1]);
+    hewn_free(job.known[0]);
+    hewn_free(job.known[1]);
+    hewn_free(job.rest);
+    hewn_simplify_forget(&job.seen);
+    hewn_simplify_forget(&job.proven);
     hewn_free(job.offending);
     hewn_free(job.pairs);
     if (result != HEWN_OK)

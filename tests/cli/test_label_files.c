@@ -48,7 +48,7 @@ static void test_glb(void **state)
                                (run_desc){.arguments = {"convert", "a.nrrd", "--labels", "all", "--names", "names.txt",
                                                         "-o", "a.glb", "--report", "r.json"}});
     assert_has(result.err, "3 labels, which share ");
-    assert_has(result.err, "unit mm -> m; up +Y; RAS");
+    assert_has(result.err, "unit mm -> m; up +Y; space gltf");
     run_result_destroy(&result);
     char *report = run_read_file(run_path(folder, "r.json"), NULL);
     assert_true(json_is_valid(report));
@@ -246,11 +246,70 @@ static void test_brain(void **state)
     run_folder_destroy(folder);
 }
 
+/* --- spaces ------------------------------------------------------------------------------------------------------- */
+
+/* Bounds of the labels' mesh, and what its file says of it. */
+static void check_space(const char *folder, const char *file, const char *space, const char *says, const double lo[3],
+                        const double hi[3])
+{
+    run_desc desc = {.arguments = {"convert", "a.nrrd", "--labels", "all", "--smooth-labels", "0", "-o", file}};
+    if (space) {
+        desc.arguments[8] = "--space";
+        desc.arguments[9] = space;
+    }
+    run_result result = run_in(0, folder, desc);
+    run_result_destroy(&result);
+    char *text = run_read_file(run_path(folder, file), NULL);
+    if (says)
+        assert_has(text, says);
+    free(text);
+    run_result info = run_in(0, folder, (run_desc){.arguments = {"info", file, "--json"}});
+    for (int axis = 0; axis < 3; axis++) {
+        char path[64];
+        snprintf(path, sizeof path, "certificate.bounds.lo.%d", axis);
+        const double low = json_number(info.out, path);
+        snprintf(path, sizeof path, "certificate.bounds.hi.%d", axis);
+        const double high = json_number(info.out, path), off = 0.02 * (hi[axis] - lo[axis]);
+        if (!(fabs(low - lo[axis]) < off && fabs(high - hi[axis]) < off))
+            fail_msg("%s: %g to %g along axis %d", file, low, high, axis);
+    }
+    run_result_destroy(&info);
+}
+
+/* Voxels reach from i = -0.5 to 4.5, of 1, 2 and 3 mm, and i runs to the left. */
+static void test_spaces(void **state)
+{
+    (void)state;
+    char *folder = run_folder_create();
+    write_labels(folder);
+    check_space(folder, "ras.ply", NULL, "SPACE=RAS", (double[]){-4.5, -1, -1.5}, (double[]){0.5, 9, 10.5});
+    check_space(folder, "lps.obj", "lps", "SPACE=LPS", (double[]){-0.5, -9, -1.5}, (double[]){4.5, 1, 10.5});
+    check_space(folder, "voxel.ply", "voxel", NULL, (double[]){-0.5, -0.5, -0.5}, (double[]){4.5, 4.5, 3.5});
+    check_space(folder, "gltf.obj", "gltf", NULL, (double[]){-0.0005, -0.0015, -0.001},
+                (double[]){0.0045, 0.0105, 0.009});
+    run_result result =
+        run_in(0, folder, (run_desc){.arguments = {"convert", "a.nrrd", "--labels", "all", "-o", "a.glb"}});
+    run_result_destroy(&result);
+    size_t length;
+    char *glb = run_read_file(run_path(folder, "a.glb"), &length);
+    assert_has(glb + 20, "\"space\": \"x left, y head, z front\""); /* behind the head, which has zeros */
+    free(glb);
+    fail_in(2, folder, "glTF's space",
+            (run_desc){.arguments = {"convert", "a.nrrd", "--labels", "all", "-o", "b.glb", "--space", "lps"}});
+    fail_in(2, folder, "--space is",
+            (run_desc){.arguments = {"convert", "a.nrrd", "--labels", "all", "-o", "b.ply", "--space", "moon"}});
+    fail_in(2, folder, "--to-up",
+            (run_desc){.arguments = {"convert", "a.nrrd", "--labels", "all", "-o", "b.ply", "--space", "lps", "--to-up",
+                                     "+y"}});
+    run_folder_destroy(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_glb),        cmocka_unit_test(test_files),   cmocka_unit_test(test_together),
-        cmocka_unit_test(test_simplified), cmocka_unit_test(test_refused), cmocka_unit_test(test_brain),
+        cmocka_unit_test(test_spaces),   cmocka_unit_test(test_glb),        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_together), cmocka_unit_test(test_simplified), cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_brain),
     };
     return cmocka_run_group_tests_name("label_files", tests, NULL, NULL);
 }

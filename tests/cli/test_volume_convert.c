@@ -623,7 +623,7 @@ static void test_bad_requests(void **state)
         const char *arguments[RUN_MAX_ARGUMENTS];
     } cases[] = {
         {2, "-o FILE", {"convert", "a.nrrd"}},
-        {2, "--method of a volume", {"convert", "a.nrrd", "-o", "a.stl", "--method", "dc"}},
+        {2, "--method of a volume", {"convert", "a.nrrd", "-o", "a.stl", "--method", "magic"}},
         {2, "--inside is", {"convert", "a.nrrd", "-o", "a.stl", "--inside", "out"}},
         {2, "--space is", {"convert", "a.nrrd", "-o", "a.stl", "--space", "moon"}},
         {2, "glTF's space", {"convert", "a.nrrd", "-o", "a.glb", "--space", "ras"}},

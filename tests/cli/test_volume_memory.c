@@ -85,9 +85,9 @@ static void test_same_file(void **state)
     write_volume(run_path(folder, "v.raw"), middle_dims, middle_balls, 3);
     compare(folder, "ply", "mc33", NULL, "4M", 4 * 1024 * 1024);
     compare(folder, "stl", "mc33", NULL, "5000K", 5000 * 1024);
-    compare(folder, "glb", "mc", NULL, "4M", 4 * 1024 * 1024);
-    compare(folder, "obj", "mc", "--open", "4M", 4 * 1024 * 1024);
-    compare(folder, "3mf", "mc33", "--open", "5M", 5 * 1024 * 1024);
+    compare(folder, "glb", "nets", NULL, "5M", 5 * 1024 * 1024);
+    compare(folder, "obj", "dc", "--open", "5M", 5 * 1024 * 1024);
+    compare(folder, "3mf", "mc", "--open", "5M", 5 * 1024 * 1024);
     run_folder_destroy(folder);
 }
 

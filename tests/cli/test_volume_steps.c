@@ -285,13 +285,19 @@ static int convert_all(const char *folder, const char *data, const char *subfold
             fail_in(says[0] == 'd' ? 2 : 3, folder, says, desc);
             continue;
         }
-        run_result result = run_in(0, folder, desc);
-        assert_has(result.err, "closed, manifold, oriented");
-        run_result_destroy(&result);
-        result = run_in(0, folder,
-                        (run_desc){.arguments = {"check", "out.stl", "--require", "closed,manifold,oriented",
-                                                 "--no-self-intersections"}});
-        run_result_destroy(&result);
+        for (int way = 0; way < 2; way++) {
+            if (most > 0 && way != count % 2)
+                continue;
+            desc.arguments[4] = "--method";
+            desc.arguments[5] = way == 0 ? "mc33" : "nets";
+            run_result result = run_in(0, folder, desc);
+            assert_has(result.err, "closed, manifold, oriented");
+            run_result_destroy(&result);
+            result = run_in(0, folder,
+                            (run_desc){.arguments = {"check", "out.stl", "--require", "closed,manifold,oriented",
+                                                     "--no-self-intersections"}});
+            run_result_destroy(&result);
+        }
     }
     closedir(all);
     return count;

@@ -315,7 +315,7 @@ static void compare(const twins *of, const hewn_volume_extract_desc *desc, uint6
         assert_memory_equal(&one.bodies, &other.bodies, sizeof one.bodies);
         assert_same_mesh(&a, &b);
         *meshes += a.triangle_count > 0;
-        if (!desc->keep && desc->method != HEWN_METHOD_NETS) {
+        if (!desc->keep) {
             uint64_t count = compare_parts(of, desc, &b);
             *parts = count > *parts ? count : *parts;
         }
@@ -329,14 +329,14 @@ static void test_same_mesh(void **state)
     (void)state;
     static const hewn_voxel types[] = {HEWN_VOXEL_FLOAT, HEWN_VOXEL_UINT8, HEWN_VOXEL_HALF, HEWN_VOXEL_DOUBLE,
                                        HEWN_VOXEL_INT32};
+    static const hewn_method methods[] = {HEWN_METHOD_MC33, HEWN_METHOD_NETS, HEWN_METHOD_MC33,
+                                          HEWN_METHOD_DC,   HEWN_METHOD_NETS, HEWN_METHOD_MARCHING_CUBES};
     static const hewn_body_choice choices[] = {{.largest = 2}, {.fill_cavities = true}, {.least_volume = 3}};
     static twins of;
     uint64_t meshes = 0, parts = 0, seeds = getenv("HEWN_LONG") ? 1500 : 35;
     for (uint64_t seed = 0; seed < seeds; seed++) {
         make(&of, shapes[seed % SHAPES], types[seed % 5], (random_kind)(seed / 2 % RANDOM_KINDS), 1000 + seed);
-        const hewn_volume_extract_desc desc = {.method = seed % 5 == 2 || seed % 2 == 0 ? HEWN_METHOD_MC33
-                                                         : seed % 4 == 3                ? HEWN_METHOD_NETS
-                                                                                        : HEWN_METHOD_MARCHING_CUBES,
+        const hewn_volume_extract_desc desc = {.method = methods[seed % 6],
                                                .iso = of.dense.type == HEWN_VOXEL_UINT8 ? 1.25 : 0.25,
                                                .inside = seed % 3 == 1 ? HEWN_INSIDE_BELOW : HEWN_INSIDE_ABOVE,
                                                .open = seed % 5 == 2,

@@ -403,7 +403,7 @@ static void test_requests_that_make_no_sense(void **state)
     const hewn_volume_extract_desc bad[] = {{.iso = NAN},
                                             {.iso = INFINITY},
                                             {.iso = 0.5, .frame = 1},
-                                            {.iso = 0.5, .method = HEWN_METHOD_DC},
+                                            {.iso = 0.5, .method = (hewn_method)99},
                                             {.iso = 0.5, .place = (const double[16]){1, 0, 0, 0, 0, 1, 0, 0, 1, 1}},
                                             {.iso = 0.5, .place = (const double[16]){NAN, 0, 0, 0, 0, 1}}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)

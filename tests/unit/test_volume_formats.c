@@ -433,7 +433,7 @@ static void test_dicom_series(void **state)
     write_series(folder, &known, 2, 2, "1.2.9");
     assert_refused_folder(folder, "slices are missing");
     write_series(folder, &known, -1, 4, "1.2.8");
-    assert_refused_folder(folder, "2 series; choose one by its UID: 1.2.8 (CT, 5 files); 1.2.9 (CT, 4 files)");
+    assert_refused_folder(folder, "2 series; choose one with --series UID: 1.2.8 (CT, 5 files); 1.2.9 (CT, 4 files)");
     /* Slices that are scaled differently become float values. */
     hewn_volume_read_desc desc = {.series = "1.2.8"};
     hewn_volume volume = read_volume(folder, &desc);

@@ -212,11 +212,11 @@ static hewn_result refuse_several(const series *all, hewn_error *error)
             continue;
         different++;
         if (used < sizeof text - 160)
-            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s (%s, %zu files)", used > 0 ? "; " : "",
-                                     all->slices[i].series, all->slices[i].facts.modality, same);
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s (%s, %zu file%s)", used > 0 ? "; " : "",
+                                     all->slices[i].series, all->slices[i].facts.modality, same, same == 1 ? "" : "s");
     }
-    return hewn_fail_at(error, HEWN_BAD_INPUT, all->folder, 0, "the folder has %zu series; choose one by its UID: %s",
-                        different, text);
+    return hewn_fail_at(error, HEWN_BAD_INPUT, all->folder, 0,
+                        "the folder has %zu series; choose one with --series UID: %s", different, text);
 }
 
 /* Leaves the slices of the one series that is wanted. */
