@@ -2,6 +2,7 @@
 #ifndef HEWN_SRC_LANES_LOOPS_H
 #define HEWN_SRC_LANES_LOOPS_H
 
+#include "base/clones.h"
 #include "lanes/tape.h"
 
 /* Rows that a step writes are none that it reads. */
@@ -19,13 +20,6 @@
         for (uint32_t i = block; i < block + HEWN_LANE_BLOCK; i++)
 /* clang-format on */
 
-/* Compiled for processors with AVX2 too, and chosen when the program is loaded. Neither form fuses products with sums,
- * so both give the same bits. */
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__) &&                        \
-    !defined(__SANITIZE_ADDRESS__)
-#define HEWN_LANE_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define HEWN_LANE_CLONES
-#endif
+#define HEWN_LANE_CLONES HEWN_CLONES
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "geom/bvh.h"
 #include "simplify/collapse.h"
+#include "simplify/fan.h"
 
 typedef struct simplify_sample {
     double at[3];    /* in coordinates of the work */
@@ -28,12 +29,12 @@ typedef struct simplify_samples {
 /* What the mesh would be around a collapse or a move, and where samples would be then. Zero is an empty one; its arrays
  * grow and are used again. */
 typedef struct simplify_probe {
-    struct probe_face *faces; /* as they would be */
-    size_t face_count, face_capacity;
-    struct probe_place *places;
-    size_t place_count, place_capacity;
-    struct probe_point *points;
-    size_t point_capacity;
+    simplify_fan fan;           /* triangles as they would be */
+    simplify_fan_point *points; /* samples there */
+    size_t point_count, point_capacity;
+    struct probe_mark *marks; /* points of the mesh */
+    simplify_mark_block *blocks;
+    size_t mark_count, mark_capacity, block_capacity;
     uint32_t cleared[2]; /* triangles that would go; HEWN_NONE */
     double most;         /* the greatest distance that grew */
     double enough,
