@@ -30,7 +30,7 @@ static uint64_t key_of(const double at[3], const double shift[3])
 
 typedef struct keyed {
     uint64_t key;
-    uint32_t vertex;
+    uint32_t item; /* a vertex or a triangle */
 } keyed;
 
 /* Least digit first; equal keys keep their order. */
@@ -67,13 +67,40 @@ static uint32_t *order_vertices(const simplify_work *work, uint32_t round, uint3
     if (keys && order) {
         for (uint32_t v = 0; v < work->vertex_count; v++)
             if (work->half[v] != SIMPLIFY_GONE)
-                keys[(*count)++].vertex = v;
+                keys[(*count)++].item = v;
 #pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
         for (uint32_t i = 0; i < *count; i++)
-            keys[i].key = key_of(simplify_at(work, keys[i].vertex), shift);
+            keys[i].key = key_of(simplify_at(work, keys[i].item), shift);
         const keyed *sorted = sort_keys(keys, keys + *count, *count);
         for (uint32_t i = 0; i < *count; i++)
-            order[i] = sorted[i].vertex;
+            order[i] = sorted[i].item;
+    } else {
+        hewn_free(order);
+        order = NULL;
+    }
+    hewn_free(keys);
+    return order;
+}
+
+uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles)
+{
+    const double unmoved[3] = {0};
+    const uint32_t count = (uint32_t)triangles->triangle_count;
+    keyed *keys = hewn_alloc(count, 2 * sizeof *keys);
+    uint32_t *order = hewn_alloc((size_t)count + 3, sizeof *order);
+    if (keys && order) {
+#pragma omp parallel for schedule(static) if (count > SIMPLIFY_FEW)
+        for (uint32_t t = 0; t < count; t++) {
+            const uint32_t *corner = triangles->corners + 3 * (size_t)t;
+            double middle[3] = {0};
+            for (size_t k = 0; k < 3; k++)
+                for (size_t axis = 0; axis < 3; axis++)
+                    middle[axis] += triangles->doubles[3 * (size_t)corner[k] + axis] / 3;
+            keys[t] = (keyed){key_of(middle, unmoved), t};
+        }
+        const keyed *sorted = sort_keys(keys, keys + count, count);
+        for (uint32_t t = 0; t < count; t++)
+            order[t] = sorted[t].item;
     } else {
         hewn_free(order);
         order = NULL;
