@@ -176,6 +176,22 @@ static bool faces_away(const simplify_samples *samples, uint32_t near, const dou
     return simplify_dot(normal, n) < 0;
 }
 
+/* A triangle of the input near a point of a triangle: one around the nearest of its samples. */
+static uint32_t guess_near(const simplify_work *work, uint32_t face, const double at[3])
+{
+    const simplify_samples *samples = work->samples;
+    uint32_t near = work->face_origins[face];
+    double least = INFINITY;
+    for (uint32_t s = samples->first[face]; s != HEWN_NONE; s = samples->items[s].next) {
+        double away[3];
+        simplify_between(at, samples->items[s].at, away);
+        const double square = simplify_dot(away, away);
+        near = square < least ? samples->faces[samples->rings[s]] : near;
+        least = square < least ? square : least;
+    }
+    return near;
+}
+
 bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face)
 {
     const simplify_samples *samples = work->samples;
@@ -186,8 +202,8 @@ bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face)
     for (int axis = 0; axis < 3; axis++)
         middle[axis] = (a[axis] + b[axis] + c[axis]) / 3;
     simplify_area_vector(a, b, c, n);
-    return faces_away(samples,
-                      hewn_bvh_nearest(&samples->bvh, &samples->input, middle, work->face_origins[face], &distance), n);
+    const uint32_t guess = guess_near(work, face, middle);
+    return faces_away(samples, hewn_bvh_nearest(&samples->bvh, &samples->input, middle, guess, &distance), n);
 }
 
 /* Whether the surface around a sample faces so much as a triangle does that all of it will. */
