@@ -72,7 +72,7 @@ static uint32_t nearest_around(const simplify_work *work, uint32_t v, const doub
 static uint32_t nearest_from(const simplify_work *work, uint32_t v, const double at[3], float *gap)
 {
     uint32_t best = nearest_around(work, v, at, gap), last = HEWN_NONE;
-    for (int step = 0; step < MOST_STEPS && *gap > 0; step++) {
+    for (int step = 0; step<MOST_STEPS && * gap> 0; step++) {
         const uint32_t now = best;
         for (uint32_t h = 3 * now; h < 3 * now + 3; h++) {
             const uint32_t twin = work->twin[h], next = twin / 3;

@@ -52,8 +52,8 @@ hewn_result hewn_simplify_samples_make(const simplify_work *work, const hewn_pol
                                        simplify_samples *out, hewn_error *error);
 void hewn_simplify_samples_release(simplify_samples *samples);
 
-/* Triangles, in coordinates of the work, along the curve of hewn_simplify_order(), for hewn_bvh_build_along(). NULL: out
- * of memory. */
+/* Triangles, in coordinates of the work, along the curve of hewn_simplify_order(), for hewn_bvh_build_along(). NULL:
+ * out of memory. */
 uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles);
 
 /* HEWN_OUT_OF_MEMORY. */
