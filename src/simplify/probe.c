@@ -77,9 +77,10 @@ static void place_samples(const simplify_samples *samples, size_t from, simplify
 {
     hewn_simplify_fan_nearest(&probe->fan, probe->points + from, probe->point_count - from);
     for (size_t i = from; i < probe->point_count; i++) {
-        const double was = (double)samples->items[probe->points[i].sample].gap, square = probe->points[i].square;
-        probe->before += was * was;
-        probe->after += square;
+        const simplify_sample *sample = &samples->items[probe->points[i].sample];
+        const double was = (double)sample->gap, square = probe->points[i].square;
+        probe->before += (double)sample->weight * was * was;
+        probe->after += (double)sample->weight * square;
         if (square > was * was * 1.002 && square > probe->most * probe->most)
             probe->most = sqrt(square);
     }

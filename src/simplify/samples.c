@@ -180,13 +180,13 @@ static hewn_result find_rings(const sampling *job, hewn_error *error)
     return HEWN_OK;
 }
 
-/* Area vectors of the triangles around. */
+/* Area vectors of the triangles around, and their areas. */
 static void find_normals(const sampling *job)
 {
     simplify_samples *out = job->out;
 #pragma omp parallel for schedule(static) if (out->count > SIMPLIFY_FEW)
     for (uint32_t s = 0; s < out->count; s++) {
-        double sum[3] = {0};
+        double sum[3] = {0}, area = 0;
         for (uint32_t i = out->rings[s]; i < out->rings[s + 1]; i++) {
             const uint32_t *corner = out->input.corners + 3 * (size_t)out->faces[i];
             double n[3];
@@ -194,10 +194,22 @@ static void find_normals(const sampling *job)
                                  out->positions + 3 * (size_t)corner[2], n);
             for (int axis = 0; axis < 3; axis++)
                 sum[axis] += n[axis];
+            area += sqrt(simplify_dot(n, n));
         }
+        out->items[s].weight = (float)area;
         for (int axis = 0; axis < 3; axis++)
             out->items[s].normal[axis] = (float)sum[axis];
     }
+}
+
+static void even_weights(simplify_samples *samples)
+{
+    double sum = 0;
+    for (uint32_t s = 0; s < samples->count; s++)
+        sum += (double)samples->items[s].weight;
+    const double mean = sum / samples->count;
+    for (uint32_t s = 0; s < samples->count; s++)
+        samples->items[s].weight = sum > 0 ? (float)((double)samples->items[s].weight / mean) : 1;
 }
 
 static hewn_result make(sampling *job, hewn_error *error)
@@ -234,6 +246,7 @@ static hewn_result make(sampling *job, hewn_error *error)
     fill(job);
     HEWN_TRY(find_rings(job, error));
     find_normals(job);
+    even_weights(job->out);
     return HEWN_OK;
 }
 

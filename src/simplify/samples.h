@@ -12,6 +12,7 @@ typedef struct simplify_sample {
     double at[3];    /* in coordinates of the work */
     float normal[3]; /* area vector of the input's triangles around; may be zero */
     float gap;       /* to the mesh: at most this */
+    float weight;    /* of the area that it stands for; their mean is 1 */
     uint32_t next;   /* of the same triangle; HEWN_NONE */
 } simplify_sample;
 
@@ -41,7 +42,7 @@ typedef struct simplify_probe {
         plenty;  /* set before: distances below the one make no difference; past the other no more is looked at */
     bool cut;    /* something is past `plenty` */
     double back; /* of the new vertex to the input */
-    double before, after; /* sums of squares of all distances */
+    double before, after; /* sums of squares of all distances, by weights */
     bool turned;          /* a triangle would face away from what is near its middle */
 } simplify_probe;
 void hewn_simplify_probe_release(simplify_probe *probe);
