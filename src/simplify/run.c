@@ -29,7 +29,7 @@ static const double turned_factor = 1000;
 static const double growth = 1.5, early_growth = 2.5;
 
 /* The distance that is aimed at, in means by cost. */
-static const double aim_factor = 1.2;
+static const double aim_factor = 1.35;
 
 /* --- one queue ---------------------------------------------------------------------------------------------------- */
 
