@@ -187,6 +187,12 @@ static void arrange(item *items, uint64_t count, uint64_t capacity) /* NOLINT(mi
 
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
+static void fill_last(uint32_t *order, uint64_t count)
+{
+    for (uint64_t t = count; t % 4 != 0; t++)
+        order[t] = order[count - 1];
+}
+
 static void fill_order(const hewn_triangle_view *mesh, item *items, uint32_t *order)
 {
     uint64_t count = mesh->triangle_count, capacity = 4;
@@ -208,8 +214,7 @@ static void fill_order(const hewn_triangle_view *mesh, item *items, uint32_t *or
         for (uint64_t t = 0; t < count; t++)
             order[t] = items[t].triangle;
     }
-    for (uint64_t t = count; t % 4 != 0; t++)
-        order[t] = order[count - 1];
+    fill_last(order, count);
 }
 
 static void fill_boxes(const hewn_triangle_view *mesh, const hewn_bvh *bvh)
@@ -224,24 +229,19 @@ static void fill_boxes(const hewn_triangle_view *mesh, const hewn_bvh *bvh)
     }
 }
 
-hewn_result hewn_bvh_build(const hewn_triangle_view *mesh, hewn_bvh *out, hewn_error *error)
+/* `order` is NULL where there was no memory for it. */
+static hewn_result build_levels(const hewn_triangle_view *mesh, uint32_t *order, hewn_bvh *out, hewn_error *error)
 {
-    *out = (hewn_bvh){0};
     uint64_t blocks = (mesh->triangle_count + 3) / 4, total = 0;
+    *out = (hewn_bvh){.order = order};
     for (bool last = false; !last; blocks = (blocks + 3) / 4) {
         last = blocks == 1;
         out->block_count[out->level_count++] = blocks;
         total += blocks;
     }
-    out->order = hewn_alloc(4 * out->block_count[0], sizeof *out->order);
-    item *items = hewn_alloc(mesh->triangle_count, sizeof *items);
-    if (out->order && items)
-        fill_order(mesh, items, out->order);
-    bool ordered = out->order && items;
-    hewn_free(items);
-    hewn_boxes4 *boxes = ordered ? hewn_alloc(total, sizeof *boxes) : NULL;
+    hewn_boxes4 *boxes = order ? hewn_alloc(total, sizeof *boxes) : NULL;
     if (!boxes) {
-        hewn_free(out->order);
+        hewn_free(order);
         *out = (hewn_bvh){0};
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the boxes of %llu triangles",
                          (unsigned long long)mesh->triangle_count);
@@ -252,6 +252,26 @@ hewn_result hewn_bvh_build(const hewn_triangle_view *mesh, hewn_bvh *out, hewn_e
     }
     fill_boxes(mesh, out);
     return HEWN_OK;
+}
+
+hewn_result hewn_bvh_build(const hewn_triangle_view *mesh, hewn_bvh *out, hewn_error *error)
+{
+    uint32_t *order = hewn_alloc(mesh->triangle_count + 3, sizeof *order);
+    item *items = hewn_alloc(mesh->triangle_count, sizeof *items);
+    if (order && items) {
+        fill_order(mesh, items, order);
+    } else {
+        hewn_free(order);
+        order = NULL;
+    }
+    hewn_free(items);
+    return build_levels(mesh, order, out, error);
+}
+
+hewn_result hewn_bvh_build_along(const hewn_triangle_view *mesh, uint32_t *order, hewn_bvh *out, hewn_error *error)
+{
+    fill_last(order, mesh->triangle_count);
+    return build_levels(mesh, order, out, error);
 }
 
 void hewn_bvh_free(hewn_bvh *bvh)

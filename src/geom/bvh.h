@@ -32,6 +32,11 @@ void hewn_triangle_box(const hewn_triangle_view *mesh, uint32_t triangle, float 
 /* Builds the hierarchy; indices must be in range, positions finite, triangles at least 1 and below 2^32.
  * HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_bvh_build(const hewn_triangle_view *mesh, hewn_bvh *out, hewn_error *error);
+
+/* The same for triangles in an order in which neighbours are mostly near each other, which takes a fraction of the
+ * time; searches take somewhat more. `order` names each triangle once and has room for three more; it is the
+ * hierarchy's from then on, also where this fails. */
+hewn_result hewn_bvh_build_along(const hewn_triangle_view *mesh, uint32_t *order, hewn_bvh *out, hewn_error *error);
 void hewn_bvh_free(hewn_bvh *bvh);
 
 /* A walk over the blocks of level 0 that may hold a triangle whose box meets a box. Begin with hewn_bvh_walk_begin();

@@ -75,18 +75,25 @@ typedef struct near_search {
 } near_search;
 
 /* Squared distances to four boxes; of slots without one infinite. */
-static void box_distances(const hewn_boxes4 *boxes, const double at[3], double out[4])
+static inline void box_distances(const hewn_boxes4 *boxes, const double at[3], double out[4])
 {
-    for (int k = 0; k < 4; k++) {
-        double sum = 0;
-        for (int axis = 0; axis < 3; axis++) {
-            double under = (double)boxes->lo[axis][k] - at[axis], over = at[axis] - (double)boxes->hi[axis][k];
-            double gap = under > over ? under : over;
-            gap = gap > 0 ? gap : 0;
-            sum += gap * gap;
-        }
-        out[k] = boxes->lo[0][k] <= boxes->hi[0][k] ? sum : INFINITY;
+    typedef float quad __attribute__((vector_size(16), aligned(4)));
+    typedef double four __attribute__((vector_size(32), aligned(8)));
+    typedef int64_t bits __attribute__((vector_size(32)));
+    four sum = {0};
+    bits full = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        const four lo = __builtin_convertvector(*(const quad *)boxes->lo[axis], four);
+        const four hi = __builtin_convertvector(*(const quad *)boxes->hi[axis], four);
+        const four under = lo - at[axis], over = at[axis] - hi;
+        const bits low = under > over;
+        four gap = (four)(((bits)under & low) | ((bits)over & ~low));
+        gap = (four)((bits)gap & (gap > 0));
+        sum += gap * gap;
+        full = axis == 0 ? lo <= hi : full;
     }
+    for (int k = 0; k < 4; k++)
+        out[k] = full[k] ? sum[k] : INFINITY;
 }
 
 static void look_at(near_search *search, uint32_t triangle)
@@ -99,20 +106,19 @@ static void look_at(near_search *search, uint32_t triangle)
     }
 }
 
-/* Nearer boxes first; those further away than what was found are passed over. */
+/* Nearer boxes first, of those as near in the order of their slots; those further away than what was found are passed
+ * over. */
 static void descend(near_search *search, uint32_t level, uint64_t block)
 {
     double square[4];
-    int order[4] = {0, 1, 2, 3};
     box_distances(&search->bvh->level[level][block], search->at, square);
-    for (int i = 1; i < 4; i++)
-        for (int k = i; k > 0 && square[order[k]] < square[order[k - 1]]; k--) {
-            int held = order[k];
-            order[k] = order[k - 1];
-            order[k - 1] = held;
-        }
-    for (int i = 0; i < 4 && square[order[i]] < search->square; i++) {
-        const uint64_t child = 4 * block + (uint64_t)order[i];
+    for (;;) {
+        const int one = square[1] < square[0] ? 1 : 0, two = square[3] < square[2] ? 3 : 2;
+        const int least = square[two] < square[one] ? two : one;
+        if (!(square[least] < search->square))
+            break;
+        square[least] = INFINITY;
+        const uint64_t child = 4 * block + (uint64_t)least;
         if (level == 0)
             look_at(search, search->bvh->order[child]);
         else

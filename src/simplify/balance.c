@@ -17,7 +17,7 @@ static uint32_t begin_at(uint32_t most, uint32_t target)
 
 static hewn_result finish(simplify_work *work, uint32_t target, hewn_error *error)
 {
-    HEWN_TRY(hewn_simplify_run(work, target, error));
+    HEWN_TRY(hewn_simplify_run(work, target, false, error));
     HEWN_TRY(hewn_simplify_fit(work, error));
     return hewn_simplify_right(work, error);
 }
@@ -28,8 +28,8 @@ hewn_result hewn_simplify_balanced(simplify_work *work, const hewn_polygons *inp
     const uint32_t most = work->live_faces;
     const bool counted = work->wedges && work->wedges->counted > 0; /* attributes have a say in where vertices are */
     if (target == 0 || target > most / 2 || counted)
-        return hewn_simplify_run(work, target, error);
-    HEWN_TRY(hewn_simplify_run(work, begin_at(most, target), error));
+        return hewn_simplify_run(work, target, false, error);
+    HEWN_TRY(hewn_simplify_run(work, begin_at(most, target), true, error));
     hewn_result result = hewn_simplify_samples_make(work, input, target, &samples, error);
     work->samples = &samples;
     if (result == HEWN_OK)

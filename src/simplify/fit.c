@@ -40,7 +40,8 @@ static void pull(const fitting *job, uint32_t h, simplify_quadric *q, double to[
         simplify_between(a, at, away);
         const double height = simplify_dot(away, n) / square; /* times n is the way to the sample */
         const double times = (double)samples->items[s].gap / job->mean;
-        const double weight = 1 + far_weight * times * times, x = weight * share * share / square;
+        const double weight = (double)samples->items[s].weight * (1 + far_weight * times * times);
+        const double x = weight * share * share / square;
         q->a[0] += x * n[0] * n[0];
         q->a[1] += x * n[0] * n[1];
         q->a[2] += x * n[0] * n[2];
@@ -92,7 +93,7 @@ static void find_gaps(fitting *job)
     double sum = 0;
     job->most = 0;
     for (uint32_t s = 0; s < samples->count; s++) {
-        sum += (double)samples->items[s].gap;
+        sum += (double)samples->items[s].weight * (double)samples->items[s].gap;
         job->most = fmax(job->most, (double)samples->items[s].gap);
     }
     job->mean = samples->count > 0 ? sum / samples->count : 0;

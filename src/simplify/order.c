@@ -4,7 +4,13 @@
 #include "base/error.h"
 #include "simplify/samples.h"
 
-enum { AXIS_BITS = 14, DIGIT_BITS = 11, DIGITS = 4 };
+/* Bits of a coordinate: of few points, and of more than there can be cells that a surface of that many goes through. */
+enum { FEW_BITS = 10, AXIS_BITS = 14, FEW_POINTS = 1 << 17, DIGIT_BITS = 11 };
+
+static int bits_of(uint32_t count)
+{
+    return count < FEW_POINTS ? FEW_BITS : AXIS_BITS;
+}
 
 /* --- the curve ---------------------------------------------------------------------------------------------------- */
 
@@ -18,25 +24,48 @@ static uint64_t spread(uint64_t x)
     return (x | x << 2) & 0x1249249249249249u;
 }
 
-/* Coordinates take half the width of the cube, so it can be moved by the other half. */
-static uint64_t key_of(const double at[3], const double shift[3])
+/* From coordinates to those whose bits, one of each in turn, are the place along the curve (Skilling 2004,
+ * 'Programming the Hilbert curve'). */
+static void transpose(uint32_t x[3], int bits)
 {
-    const double most = (1 << AXIS_BITS) - 1;
-    uint64_t key = 0;
+    for (uint32_t bit = 1u << (bits - 1); bit > 1; bit >>= 1) {
+        const uint32_t below = bit - 1;
+        for (int axis = 0; axis < 3; axis++) { /* turned over, or changed with the first */
+            const uint32_t over = x[axis] & bit ? below : 0, swapped = (x[0] ^ x[axis]) & below & ~over;
+            x[0] ^= over | swapped;
+            x[axis] ^= swapped;
+        }
+    }
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    uint32_t rest = x[2];
+    for (int shift = 1; shift < bits; shift *= 2) /* of the bits above each, whether they are odd in number */
+        rest ^= rest >> shift;
+    rest = rest >> 1;
     for (int axis = 0; axis < 3; axis++)
-        key |= spread((uint64_t)(((at[axis] + 1) / 4 + shift[axis] / 2) * most)) << axis;
-    return key;
+        x[axis] ^= rest;
+}
+
+/* Coordinates take half the width of the cube, so it can be moved by the other half. */
+static uint64_t key_of(const double at[3], const double shift[3], int bits)
+{
+    const double most = (1 << bits) - 1;
+    uint32_t x[3];
+    for (int axis = 0; axis < 3; axis++)
+        x[axis] = (uint32_t)(((at[axis] + 1) / 4 + shift[axis] / 2) * most);
+    transpose(x, bits);
+    return spread(x[0]) << 2 | spread(x[1]) << 1 | spread(x[2]);
 }
 
 typedef struct keyed {
     uint64_t key;
-    uint32_t vertex;
+    uint32_t item; /* a vertex or a triangle */
 } keyed;
 
 /* Least digit first; equal keys keep their order. */
 static keyed *sort_keys(keyed *from, keyed *to, uint32_t count)
 {
-    for (int digit = 0; digit < DIGITS; digit++) {
+    for (int digit = 0; digit * DIGIT_BITS < 3 * bits_of(count); digit++) {
         uint32_t places[1 << DIGIT_BITS] = {0}, sum = 0;
         const int shift = digit * DIGIT_BITS;
         const uint64_t mask = (1 << DIGIT_BITS) - 1;
@@ -63,17 +92,45 @@ static uint32_t *order_vertices(const simplify_work *work, uint32_t round, uint3
     const double shift[3] = {fmod(step, 1), fmod(step + 0.33, 1), fmod(step + 0.67, 1)};
     keyed *keys = hewn_alloc(work->live_vertices, 2 * sizeof *keys);
     uint32_t *order = hewn_alloc(work->live_vertices, sizeof *order);
+    const int bits = bits_of(work->live_vertices);
     *count = 0;
     if (keys && order) {
         for (uint32_t v = 0; v < work->vertex_count; v++)
             if (work->half[v] != SIMPLIFY_GONE)
-                keys[(*count)++].vertex = v;
+                keys[(*count)++].item = v;
 #pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
         for (uint32_t i = 0; i < *count; i++)
-            keys[i].key = key_of(simplify_at(work, keys[i].vertex), shift);
+            keys[i].key = key_of(simplify_at(work, keys[i].item), shift, bits);
         const keyed *sorted = sort_keys(keys, keys + *count, *count);
         for (uint32_t i = 0; i < *count; i++)
-            order[i] = sorted[i].vertex;
+            order[i] = sorted[i].item;
+    } else {
+        hewn_free(order);
+        order = NULL;
+    }
+    hewn_free(keys);
+    return order;
+}
+
+uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles)
+{
+    const double unmoved[3] = {0};
+    const uint32_t count = (uint32_t)triangles->triangle_count;
+    keyed *keys = hewn_alloc(count, 2 * sizeof *keys);
+    uint32_t *order = hewn_alloc((size_t)count + 3, sizeof *order);
+    if (keys && order) {
+#pragma omp parallel for schedule(static) if (count > SIMPLIFY_FEW)
+        for (uint32_t t = 0; t < count; t++) {
+            const uint32_t *corner = triangles->corners + 3 * (size_t)t;
+            double middle[3] = {0};
+            for (size_t k = 0; k < 3; k++)
+                for (size_t axis = 0; axis < 3; axis++)
+                    middle[axis] += triangles->doubles[3 * (size_t)corner[k] + axis] / 3;
+            keys[t] = (keyed){key_of(middle, unmoved, bits_of(count)), t};
+        }
+        const keyed *sorted = sort_keys(keys, keys + count, count);
+        for (uint32_t t = 0; t < count; t++)
+            order[t] = sorted[t].item;
     } else {
         hewn_free(order);
         order = NULL;

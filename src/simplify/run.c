@@ -9,7 +9,7 @@
 
 /* Vertices of a part: what its collapses touch fits in a core's second cache. With samples there is more to do for
  * each, and fewer of them. */
-enum { PART = 4096, PROBED_PART = 512, MOST_ROUNDS = 40, BINS = 1 << 16 };
+enum { PART = 4096, PROBED_PART = 1024, MOST_ROUNDS = 40, BINS = 1 << 16 };
 
 static uint32_t part_of(const simplify_work *work)
 {
@@ -24,11 +24,12 @@ static const float slim_factor = 100;
 static const double turned_factor = 1000;
 
 /* Costs grow while edges go: the last ones to go cost about the square of how many times the triangles are to be less,
- * times what as many edges cost less than now. Limits of rounds are somewhat less than that. */
-static const double growth = 1.4;
+ * times what as many edges cost less than now. Limits of rounds are somewhat less than that; where more rounds with
+ * samples follow, which edges go before others matters less than how many rounds there are. */
+static const double growth = 1.5, early_growth = 2.5;
 
 /* The distance that is aimed at, in means by cost. */
-static const double aim_factor = 1.2;
+static const double aim_factor = 1.35;
 
 /* --- one queue ---------------------------------------------------------------------------------------------------- */
 
@@ -311,7 +312,8 @@ static void recount(simplify_work *work)
     work->live_vertices = verts;
 }
 
-static hewn_result run_round(simplify_work *work, uint32_t target, uint32_t *removed)
+/* `*limit` is that of the rounds before, and never becomes less: what is left between parts costs little. */
+static hewn_result run_round(simplify_work *work, uint32_t target, bool early, float *limit, uint32_t *removed)
 {
     part_list parts = {.work = work};
     const uint32_t most_parts = work->vertex_count / part_of(work) + 2, wanted = work->live_faces - target;
@@ -323,8 +325,9 @@ static hewn_result run_round(simplify_work *work, uint32_t target, uint32_t *rem
     if (result == HEWN_OK) {
         find_inside(work, parts.inside);
         split(&parts);
-        parts.limit = find_limit(work, wanted, bins);
-        parts.limit = (float)fmin((double)parts.limit * pow((double)work->live_faces / target, growth), FLT_MAX);
+        const double more = pow((double)work->live_faces / target, early ? early_growth : growth);
+        parts.limit = fmaxf(*limit, (float)fmin((double)find_limit(work, wanted, bins) * more, FLT_MAX));
+        *limit = parts.limit;
         count_edges(&parts);
         result = run_parts(&parts, wanted, removed);
         work->live_faces -= *removed;
@@ -382,9 +385,10 @@ static bool set_aim(simplify_work *work, uint32_t target)
     return true;
 }
 
-hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, hewn_error *error)
+hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, bool early, hewn_error *error)
 {
     const uint32_t began = work->live_faces;
+    float limit = 0;
     if (work->samples && target < began && !set_aim(work, target))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     for (uint32_t round = 0; round < MOST_ROUNDS && work->live_faces > target; round++) {
@@ -394,7 +398,7 @@ hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, hewn_error *
         if (work->vertex_count <= 2 * part_of(work) || (work->live_faces - target) < began / 50)
             break;
         uint32_t removed = 0, wanted = work->live_faces - target;
-        if (run_round(work, target, &removed) != HEWN_OK)
+        if (run_round(work, target, early, &limit, &removed) != HEWN_OK)
             return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
         if (removed < wanted / 10)
             break;

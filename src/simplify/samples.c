@@ -9,6 +9,9 @@
 /* For each triangle of the target. */
 enum { SAMPLES = 16 };
 
+/* Steps to a nearer triangle. */
+enum { MOST_STEPS = 8 };
+
 void hewn_simplify_samples_release(simplify_samples *samples)
 {
     hewn_free(samples->items);
@@ -65,21 +68,24 @@ static uint32_t nearest_around(const simplify_work *work, uint32_t v, const doub
     return best;
 }
 
+/* From there on to triangles across sides while these are nearer. */
 static uint32_t nearest_from(const simplify_work *work, uint32_t v, const double at[3], float *gap)
 {
-    uint32_t best = nearest_around(work, v, at, gap);
-    for (int step = 0; step < 8; step++) {
-        const uint32_t was = best;
-        for (uint32_t k = 0; k < 3; k++) {
-            const uint32_t corner = work->tail[3 * was + k];
-            float found;
-            if (work->rank[corner] == SIMPLIFY_APART)
+    uint32_t best = nearest_around(work, v, at, gap), last = HEWN_NONE;
+    for (int step = 0; step<MOST_STEPS && * gap> 0; step++) {
+        const uint32_t now = best;
+        for (uint32_t h = 3 * now; h < 3 * now + 3; h++) {
+            const uint32_t twin = work->twin[h], next = twin / 3;
+            if (twin == HEWN_NONE || next == last || (step == 0 && (work->tail[h] == v || simplify_head(work, h) == v)))
                 continue;
-            const uint32_t face = nearest_around(work, corner, at, &found);
-            best = found < *gap ? face : best;
+            const uint32_t *corner = work->tail + 3 * (size_t)next;
+            const float found = (float)hewn_triangle_reach(at, simplify_at(work, corner[0]),
+                                                           simplify_at(work, corner[1]), simplify_at(work, corner[2]));
+            best = found < *gap ? next : best;
             *gap = found < *gap ? found : *gap;
         }
-        if (best == was)
+        last = now;
+        if (best == now)
             break;
     }
     return best;
@@ -174,13 +180,13 @@ static hewn_result find_rings(const sampling *job, hewn_error *error)
     return HEWN_OK;
 }
 
-/* Area vectors of the triangles around. */
+/* Area vectors of the triangles around, and their areas. */
 static void find_normals(const sampling *job)
 {
     simplify_samples *out = job->out;
 #pragma omp parallel for schedule(static) if (out->count > SIMPLIFY_FEW)
     for (uint32_t s = 0; s < out->count; s++) {
-        double sum[3] = {0};
+        double sum[3] = {0}, area = 0;
         for (uint32_t i = out->rings[s]; i < out->rings[s + 1]; i++) {
             const uint32_t *corner = out->input.corners + 3 * (size_t)out->faces[i];
             double n[3];
@@ -188,10 +194,22 @@ static void find_normals(const sampling *job)
                                  out->positions + 3 * (size_t)corner[2], n);
             for (int axis = 0; axis < 3; axis++)
                 sum[axis] += n[axis];
+            area += sqrt(simplify_dot(n, n));
         }
+        out->items[s].weight = (float)area;
         for (int axis = 0; axis < 3; axis++)
             out->items[s].normal[axis] = (float)sum[axis];
     }
+}
+
+static void even_weights(simplify_samples *samples)
+{
+    double sum = 0;
+    for (uint32_t s = 0; s < samples->count; s++)
+        sum += (double)samples->items[s].weight;
+    const double mean = sum / samples->count;
+    for (uint32_t s = 0; s < samples->count; s++)
+        samples->items[s].weight = sum > 0 ? (float)((double)samples->items[s].weight / mean) : 1;
 }
 
 static hewn_result make(sampling *job, hewn_error *error)
@@ -219,12 +237,16 @@ static hewn_result make(sampling *job, hewn_error *error)
                                            .triangle_count = job->input->face_count,
                                            .doubles = job->out->positions,
                                            .corners = job->input->corners};
-    HEWN_TRY(hewn_bvh_build(&job->out->input, &job->out->bvh, error));
+    uint32_t *along = hewn_simplify_along(&job->out->input);
+    if (!along)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
+    HEWN_TRY(hewn_bvh_build_along(&job->out->input, along, &job->out->bvh, error));
     find_faces(job);
     HEWN_TRY(order_samples(job, count, error));
     fill(job);
     HEWN_TRY(find_rings(job, error));
     find_normals(job);
+    even_weights(job->out);
     return HEWN_OK;
 }
 

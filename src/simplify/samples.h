@@ -6,11 +6,13 @@
 
 #include "geom/bvh.h"
 #include "simplify/collapse.h"
+#include "simplify/fan.h"
 
 typedef struct simplify_sample {
     double at[3];    /* in coordinates of the work */
     float normal[3]; /* area vector of the input's triangles around; may be zero */
     float gap;       /* to the mesh: at most this */
+    float weight;    /* of the area that it stands for; their mean is 1 */
     uint32_t next;   /* of the same triangle; HEWN_NONE */
 } simplify_sample;
 
@@ -28,19 +30,19 @@ typedef struct simplify_samples {
 /* What the mesh would be around a collapse or a move, and where samples would be then. Zero is an empty one; its arrays
  * grow and are used again. */
 typedef struct simplify_probe {
-    struct probe_face *faces; /* as they would be */
-    size_t face_count, face_capacity;
-    struct probe_place *places;
-    size_t place_count, place_capacity;
-    struct probe_point *points;
-    size_t point_capacity;
+    simplify_fan fan;           /* triangles as they would be */
+    simplify_fan_point *points; /* samples there */
+    size_t point_count, point_capacity;
+    struct probe_mark *marks; /* points of the mesh */
+    simplify_mark_block *blocks;
+    size_t mark_count, mark_capacity, block_capacity;
     uint32_t cleared[2]; /* triangles that would go; HEWN_NONE */
     double most;         /* the greatest distance that grew */
     double enough,
         plenty;  /* set before: distances below the one make no difference; past the other no more is looked at */
     bool cut;    /* something is past `plenty` */
     double back; /* of the new vertex to the input */
-    double before, after; /* sums of squares of all distances */
+    double before, after; /* sums of squares of all distances, by weights */
     bool turned;          /* a triangle would face away from what is near its middle */
 } simplify_probe;
 void hewn_simplify_probe_release(simplify_probe *probe);
@@ -50,6 +52,10 @@ void hewn_simplify_probe_release(simplify_probe *probe);
 hewn_result hewn_simplify_samples_make(const simplify_work *work, const hewn_polygons *input, uint32_t target,
                                        simplify_samples *out, hewn_error *error);
 void hewn_simplify_samples_release(simplify_samples *samples);
+
+/* Triangles, in coordinates of the work, along the curve of hewn_simplify_order(), for hewn_bvh_build_along(). NULL:
+ * out of memory. */
+uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles);
 
 /* HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe);

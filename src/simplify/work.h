@@ -136,11 +136,12 @@ hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error);
 /* Keys of all edges, as quadrics are now. */
 void hewn_simplify_key(simplify_work *work);
 
-/* Puts vertices and triangles that are left into an order in which neighbours are near each other, along a curve of
- * Morton's through cubes that lie elsewhere for each `round`; removed ones are dropped. HEWN_OUT_OF_MEMORY. */
+/* Puts vertices and triangles that are left into an order in which neighbours are near each other, along Hilbert's
+ * curve through cubes that lie elsewhere for each `round`; removed ones are dropped. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_order(simplify_work *work, uint32_t round, hewn_error *error);
 
-/* Collapses edges until `target` triangles are left, or none may be collapsed any more. */
-hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, hewn_error *error);
+/* Collapses edges until `target` triangles are left, or none may be collapsed any more. `early`: another run follows.
+ */
+hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, bool early, hewn_error *error);
 
 #endif

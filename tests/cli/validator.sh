@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Every shipped scene, meshed by the command into GLB, has 0 errors and 0 warnings in the Khronos glTF validator. TAP
-# on standard output. Needs HEWN_COMMAND and HEWN_SOURCE; without node or the validator (./dev fetches it) it skips.
+# Every shipped scene, meshed by the command into GLB, and what `hewn convert` and `hewn lod` write have 0 errors and 0
+# warnings in the Khronos glTF validator. TAP on standard output. Needs HEWN_COMMAND and HEWN_SOURCE; without node or
+# the validator (./dev fetches it) it skips.
 # shellcheck disable=SC2317  # check calls the cases by name
 set -uo pipefail
 
@@ -111,16 +112,27 @@ convert_and_validate() { # FILE TEXT-THAT-THE-RESULT-MUST-HAVE
         node "$HEWN_SOURCE/tests/cli/validate_gltf.cjs" "${validators[-1]}" "$work/converted.glb"
 }
 
+lod_and_validate() { # FILE TEXT-THAT-THE-RESULT-MUST-HAVE OPTION...
+    local file=$1 text=$2
+    shift 2
+    "$HEWN_COMMAND" lod "$file" -o "$work/lod.glb" "$@" --quiet && grep -qaF -- "$text" "$work/lod.glb" &&
+        node "$HEWN_SOURCE/tests/cli/validate_gltf.cjs" "${validators[-1]}" "$work/lod.glb"
+}
+
 textured_cube 'f 2/1/6 4/2/6 8/3/6 6/4/6' >"$work/closed.obj"
 textured_cube '' >"$work/open.obj"
 coloured_points >"$work/coloured.ply"
 
-printf '1..%d\n' $((${#scenes[@]} + 5))
+printf '1..%d\n' $((${#scenes[@]} + 8))
 check 'there are scenes' test ${#scenes[@]} -gt 0
 check 'the validator rejects a broken file' rejects_a_broken_file
 check 'seams of a closed surface' convert_and_validate "$work/closed.obj" EXT_mesh_manifold
 check 'seams of an open surface' convert_and_validate "$work/open.obj" hewn_topology
 check 'colours and users attributes' convert_and_validate "$work/coloured.ply" COLOR_0
+bust=$HEWN_SOURCE/assets/scenes/meshes/demosthenes.ply
+check 'levels of detail' lod_and_validate "$bust" MSFT_lod --levels 1,0.3,0.1
+check 'levels of detail with seams' lod_and_validate "$work/closed.obj" MSFT_lod --levels 1,0.5
+check 'clusters' lod_and_validate "$bust" hewn_clusters --clusters
 for scene in "${scenes[@]}"; do
     check "$(basename -- "$scene")" mesh_and_validate "$scene"
 done
