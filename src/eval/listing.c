@@ -7,6 +7,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "field/outline.h"
 #include "field/sampling.h"
 
 /* A parameter as the GPU has it. */
@@ -61,13 +62,21 @@ static void put_cone(hewn_listing *listing, hewn_code_step *step, const double *
 }
 
 /* With the reciprocal of the square of the edge's length. */
-static void put_edge(hewn_listing *listing, hewn_code_step *step, const double *p)
+static void round_edge(const double *p, float out[HEWN_TABLE_SIDE])
 {
     for (int i = 0; i < 4; i++)
-        put(listing, step, p[i]);
-    double x = (double)rounded(p[2]) - (double)rounded(p[0]), y = (double)rounded(p[3]) - (double)rounded(p[1]);
+        out[i] = rounded(p[i]);
+    double x = (double)out[2] - (double)out[0], y = (double)out[3] - (double)out[1];
     double square = x * x + y * y;
-    put(listing, step, square > 0 ? fmin(1 / square, 1e29) : 0);
+    out[4] = rounded(square > 0 ? fmin(1 / square, 1e29) : 0);
+}
+
+static void put_edge(hewn_listing *listing, hewn_code_step *step, const double *p)
+{
+    float edge[HEWN_TABLE_SIDE];
+    round_edge(p, edge);
+    for (int i = 0; i < HEWN_TABLE_SIDE; i++)
+        put(listing, step, (double)edge[i]);
 }
 
 /* Where the samples are on the device, which whoever brings them there writes over the first three numbers; the cells
@@ -129,17 +138,34 @@ bool hewn_listing_is_plain(const hewn_listing *listing, const hewn_code_step *st
             op == HEWN_OP_MAX);
 }
 
-static void add_step(hewn_listing *listing, const hewn_node_data *node, const uint32_t *places)
+/* Where the table is, as with samples, and what it says of itself. */
+static void put_table(hewn_listing *listing, hewn_code_step *step, uint32_t table)
+{
+    for (int i = 0; i < HEWN_ADDRESS_NUMBERS; i++)
+        put(listing, step, 0);
+    for (int i = 0; i < HEWN_TABLE_NUMBERS; i++)
+        put(listing, step, (double)listing->tables[table - 1].numbers[i]);
+    step->function = "outline_table";
+    step->table = table;
+}
+
+/* The first of an outline's operands that its step has: with a table it needs no links. */
+static uint32_t first_operand(uint32_t table)
+{
+    return table ? 1 : 0;
+}
+
+static void add_step(hewn_listing *listing, const hewn_node_data *node, uint32_t table, const uint32_t *places)
 {
     const hewn_op_info *info = &hewn_op_infos[node->op];
     hewn_code_step *step = &listing->steps[listing->count++];
-    *step = (hewn_code_step){.op = node->op,
-                             .function = info->name,
-                             .in_count = info->operands,
-                             .parameter = (uint32_t)listing->parameter_count};
-    for (uint32_t i = 0; i < info->operands; i++)
-        step->in[i] = places[node->operand[i]];
-    put_parameters(listing, step, node);
+    *step = (hewn_code_step){.op = node->op, .function = info->name, .parameter = (uint32_t)listing->parameter_count};
+    for (uint32_t i = first_operand(table); i < info->operands; i++)
+        step->in[step->in_count++] = places[node->operand[i]];
+    if (table)
+        put_table(listing, step, table);
+    else
+        put_parameters(listing, step, node);
     if (node->op <= HEWN_OP_Z)
         step->axes = 1u << (node->op - HEWN_OP_X);
     for (uint32_t i = 0; i < step->in_count; i++)
@@ -147,34 +173,105 @@ static void add_step(hewn_listing *listing, const hewn_node_data *node, const ui
     hewn_code_step_reach(listing, step);
 }
 
-static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
-                        hewn_error *error)
+/* --- tables ------------------------------------------------------------------------------------------------------ */
+
+/* Fewer sides cost less written out than a table that is read. Where more of them matter in one place a table is no
+ * good, and a loop over them too long for drivers that bound those. */
+enum { TABLE_FROM = 24, TABLE_MOST = 250 };
+
+static hewn_result make_table(hewn_listing *listing, const hewn_field *field, const hewn_node_data *outline,
+                              uint32_t *table, hewn_error *error)
 {
-    enum { PARAMETERS_MAX = 8 };
-    uint32_t *places = hewn_alloc(hewn_field_node_count(field), sizeof *places);
-    listing->steps = hewn_alloc_zero(count, sizeof *listing->steps);
-    listing->parameters = hewn_alloc(count, PARAMETERS_MAX * sizeof *listing->parameters);
-    bool enough = places && listing->steps && listing->parameters;
-    for (size_t i = 0; enough && i < count; i++) {
+    uint32_t count = hewn_outline_count(field, outline);
+    if (count < TABLE_FROM)
+        return HEWN_OK;
+    double(*sides)[4] = hewn_alloc(count, sizeof *sides);
+    float(*edges)[HEWN_TABLE_SIDE] = hewn_alloc(count, sizeof *edges);
+    void *tables = listing->tables;
+    size_t capacity = listing->table_count;
+    hewn_result result = sides && edges ? hewn_reserve(&tables, &capacity, listing->table_count + 1,
+                                                       sizeof *listing->tables, error)
+                                        : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an outline");
+    if (result == HEWN_OK) {
+        listing->tables = tables;
+        hewn_outline_sides(field, outline, sides);
+        for (uint32_t i = 0; i < count; i++)
+            round_edge(sides[i], edges[i]);
+        hewn_outline_table *made = &listing->tables[listing->table_count];
+        result = hewn_outline_table_create((const float(*)[HEWN_TABLE_SIDE])edges, count,
+                                           rounded(outline->parameter[0]), TABLE_MOST, made, error);
+        if (made->words)
+            *table = (uint32_t)++listing->table_count;
+    }
+    hewn_free(edges);
+    hewn_free(sides);
+    return result;
+}
+
+/* Which outlines have tables, by node, and which nodes are still needed then. */
+static hewn_result make_tables(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
+                               bool chained, uint32_t *tables, bool *needed, hewn_error *error)
+{
+    for (size_t i = 0; i < count && !chained; i++) {
         const hewn_node_data *node = hewn_field_node(field, ids[i]);
+        if (node->op == HEWN_OP_OUTLINE)
+            HEWN_TRY(make_table(listing, field, node, &tables[ids[i]], error));
+    }
+    needed[ids[count - 1]] = true;
+    for (size_t i = count; i-- > 0;) {
+        const hewn_node_data *node = hewn_field_node(field, ids[i]);
+        for (uint32_t k = first_operand(tables[ids[i]]); needed[ids[i]] && k < hewn_op_infos[node->op].operands; k++)
+            needed[node->operand[k]] = true;
+    }
+    return HEWN_OK;
+}
+
+static void add_steps(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
+                      const uint32_t *tables, const bool *needed, uint32_t *places)
+{
+    for (size_t i = 0; i < count; i++) {
+        const hewn_node_data *node = hewn_field_node(field, ids[i]);
+        if (!needed[ids[i]])
+            continue;
         if (node->op == HEWN_OP_PAINT) {
             places[ids[i]] = places[node->operand[0]];
             continue;
         }
         places[ids[i]] = (uint32_t)listing->count;
-        add_step(listing, node, places);
+        add_step(listing, node, tables[ids[i]], places);
     }
-    hewn_free(places);
-    return enough ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %zu operations", count);
 }
 
-hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, hewn_error *error)
+static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
+                        bool chained, hewn_error *error)
+{
+    enum { PARAMETERS_MAX = 8 };
+    size_t nodes = hewn_field_node_count(field);
+    uint32_t *places = hewn_alloc(nodes, sizeof *places), *tables = hewn_alloc_zero(nodes, sizeof *tables);
+    bool *needed = hewn_alloc_zero(nodes, sizeof *needed);
+    listing->steps = hewn_alloc_zero(count, sizeof *listing->steps);
+    listing->parameters = hewn_alloc(count, PARAMETERS_MAX * sizeof *listing->parameters);
+    hewn_result result = HEWN_OK;
+    if (!places || !tables || !needed || !listing->steps || !listing->parameters)
+        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %zu operations", count);
+    else
+        result = make_tables(listing, field, ids, count, chained, tables, needed, error);
+    if (result == HEWN_OK)
+        add_steps(listing, field, ids, count, tables, needed, places);
+    hewn_free(needed);
+    hewn_free(tables);
+    hewn_free(places);
+    return result;
+}
+
+hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, bool chained,
+                                hewn_error *error)
 {
     memset(out, 0, sizeof *out);
     uint32_t *ids;
     size_t count;
     HEWN_TRY(hewn_field_live_nodes(field, root, &ids, &count, error));
-    hewn_result result = fill(out, field, ids, count, error);
+    hewn_result result = fill(out, field, ids, count, chained, error);
     hewn_free(ids);
     if (result == HEWN_OK)
         result = hewn_listing_part(out, error);
@@ -185,6 +282,9 @@ hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn
 
 void hewn_listing_destroy(hewn_listing *listing)
 {
+    for (size_t i = 0; i < listing->table_count; i++)
+        hewn_free(listing->tables[i].words);
+    hewn_free(listing->tables);
     hewn_free(listing->steps);
     hewn_free(listing->parameters);
     memset(listing, 0, sizeof *listing);
@@ -194,6 +294,8 @@ uint32_t hewn_listing_weight(const hewn_code_step *step)
 {
     if (!step->function)
         return 0;
+    if (step->table)
+        return 150;
     switch (step->op) {
     case HEWN_OP_SIN:
     case HEWN_OP_COS:
