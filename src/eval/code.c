@@ -188,8 +188,9 @@ enum { LISTED_FROM = 12, READING = 60, A_SLOT = 6 };
 enum { LISTED_EDGES = 64 };
 
 /* Drivers that bound loops give an invocation 65,535 iterations: one that solves sixteen vertices asks up to fourteen
- * values for each, so that this much of a value's tables is walked over to its end. */
-enum { STRAIGHT_MOST = 280 };
+ * values for each, so that this much of a value's tables is walked over to its end. With lists it is four times four
+ * vertices, and most of the lists are short. */
+enum { WAY_MOST = 280, LISTED_WAY_MOST = 560 };
 
 static uint64_t longest_way(const hewn_listing *listing)
 {
@@ -208,7 +209,7 @@ static bool lists_pay(const hewn_code *code)
         all += hewn_listing_weight(&code->listing.steps[i]);
         edges += code->listing.steps[i].op == HEWN_OP_EDGE;
     }
-    if (edges > LISTED_EDGES || longest_way(&code->listing) > STRAIGHT_MOST)
+    if (edges > LISTED_EDGES || longest_way(&code->listing) > WAY_MOST)
         return true;
     for (uint32_t i = 0; i < set->body_count; i++)
         one += set->bodies[i].weight;
@@ -246,7 +247,8 @@ static hewn_result write_field(hewn_device *device, hewn_code *code, const hewn_
 {
     code->chained = desc->chained;
     HEWN_TRY(list_field(device, code, field, root, desc, error));
-    if (!code->listed && longest_way(&code->listing) > STRAIGHT_MOST) {
+    if (longest_way(&code->listing) > (code->listed ? LISTED_WAY_MOST : WAY_MOST)) {
+        hewn_instructions_destroy(&code->instructions);
         hewn_listing_destroy(&code->listing);
         code->choice = (hewn_library_choice){0};
         code->chained = true;

@@ -7,11 +7,9 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "field/outline.h"
 #include "field/sampling.h"
 
-/* A parameter as the GPU has it. */
-static float rounded(double value)
+float hewn_listing_rounded(double value)
 {
     float single = (float)value;
     return fabsf(single) < FLT_MIN ? 0.0f : single;
@@ -19,7 +17,7 @@ static float rounded(double value)
 
 static void put(hewn_listing *listing, hewn_code_step *step, double value)
 {
-    listing->parameters[listing->parameter_count++] = rounded(value);
+    listing->parameters[listing->parameter_count++] = hewn_listing_rounded(value);
     step->parameter_count++;
 }
 
@@ -30,13 +28,13 @@ static void put_affine(hewn_listing *listing, hewn_code_step *step, const double
     uint32_t kept = 0;
     double factor[3];
     for (uint32_t i = 0; i < 3; i++)
-        if (rounded(factors[i]) != 0) {
+        if (hewn_listing_rounded(factors[i]) != 0) {
             factor[kept] = factors[i];
             step->in[kept++] = step->in[i];
         }
     step->in_count = kept;
     step->function = "affine";
-    if (kept == 1 && rounded(factor[0]) == 1) {
+    if (kept == 1 && hewn_listing_rounded(factor[0]) == 1) {
         step->function = "shift";
         kept = 0;
     }
@@ -61,20 +59,10 @@ static void put_cone(hewn_listing *listing, hewn_code_step *step, const double *
     put(listing, step, 0.5 * (p[0] + p[1]));
 }
 
-/* With the reciprocal of the square of the edge's length. */
-static void round_edge(const double *p, float out[HEWN_TABLE_SIDE])
-{
-    for (int i = 0; i < 4; i++)
-        out[i] = rounded(p[i]);
-    double x = (double)out[2] - (double)out[0], y = (double)out[3] - (double)out[1];
-    double square = x * x + y * y;
-    out[4] = rounded(square > 0 ? fmin(1 / square, 1e29) : 0);
-}
-
 static void put_edge(hewn_listing *listing, hewn_code_step *step, const double *p)
 {
     float edge[HEWN_TABLE_SIDE];
-    round_edge(p, edge);
+    hewn_listing_round_edge(p, edge);
     for (int i = 0; i < HEWN_TABLE_SIDE; i++)
         put(listing, step, (double)edge[i]);
 }
@@ -149,23 +137,22 @@ static void put_table(hewn_listing *listing, hewn_code_step *step, uint32_t tabl
     step->table = table;
 }
 
-/* The first of an outline's operands that its step has: with a table it needs no links. */
-static uint32_t first_operand(uint32_t table)
-{
-    return table ? 1 : 0;
-}
-
-static void add_step(hewn_listing *listing, const hewn_node_data *node, uint32_t table, const uint32_t *places)
+static void add_step(hewn_listing *listing, const hewn_node_data *node, const hewn_table_use *use,
+                     const uint32_t *places)
 {
     const hewn_op_info *info = &hewn_op_infos[node->op];
     hewn_code_step *step = &listing->steps[listing->count++];
     *step = (hewn_code_step){.op = node->op, .function = info->name, .parameter = (uint32_t)listing->parameter_count};
-    for (uint32_t i = first_operand(table); i < info->operands; i++)
-        step->in[step->in_count++] = places[node->operand[i]];
-    if (table)
-        put_table(listing, step, table);
-    else
+    if (use->table) {
+        step->op = HEWN_OP_OUTLINE;
+        for (int i = 0; i < 2; i++)
+            step->in[step->in_count++] = places[use->at[i]];
+        put_table(listing, step, use->table);
+    } else {
+        for (uint32_t i = 0; i < info->operands; i++)
+            step->in[step->in_count++] = places[node->operand[i]];
         put_parameters(listing, step, node);
+    }
     if (node->op <= HEWN_OP_Z)
         step->axes = 1u << (node->op - HEWN_OP_X);
     for (uint32_t i = 0; i < step->in_count; i++)
@@ -173,72 +160,19 @@ static void add_step(hewn_listing *listing, const hewn_node_data *node, uint32_t
     hewn_code_step_reach(listing, step);
 }
 
-/* --- tables ------------------------------------------------------------------------------------------------------ */
-
-/* Fewer sides cost less written out than a table that is read. Where more of them matter in one place a table is no
- * good, and a loop over them too long for drivers that bound those. */
-enum { TABLE_FROM = 24, TABLE_MOST = 250 };
-
-static hewn_result make_table(hewn_listing *listing, const hewn_field *field, const hewn_node_data *outline,
-                              uint32_t *table, hewn_error *error)
-{
-    uint32_t count = hewn_outline_count(field, outline);
-    if (count < TABLE_FROM)
-        return HEWN_OK;
-    double(*sides)[4] = hewn_alloc(count, sizeof *sides);
-    float(*edges)[HEWN_TABLE_SIDE] = hewn_alloc(count, sizeof *edges);
-    void *tables = listing->tables;
-    size_t capacity = listing->table_count;
-    hewn_result result = sides && edges ? hewn_reserve(&tables, &capacity, listing->table_count + 1,
-                                                       sizeof *listing->tables, error)
-                                        : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an outline");
-    if (result == HEWN_OK) {
-        listing->tables = tables;
-        hewn_outline_sides(field, outline, sides);
-        for (uint32_t i = 0; i < count; i++)
-            round_edge(sides[i], edges[i]);
-        hewn_outline_table *made = &listing->tables[listing->table_count];
-        result = hewn_outline_table_create((const float(*)[HEWN_TABLE_SIDE])edges, count,
-                                           rounded(outline->parameter[0]), TABLE_MOST, made, error);
-        if (made->words)
-            *table = (uint32_t)++listing->table_count;
-    }
-    hewn_free(edges);
-    hewn_free(sides);
-    return result;
-}
-
-/* Which outlines have tables, by node, and which nodes are still needed then. */
-static hewn_result make_tables(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
-                               bool chained, uint32_t *tables, bool *needed, hewn_error *error)
-{
-    for (size_t i = 0; i < count && !chained; i++) {
-        const hewn_node_data *node = hewn_field_node(field, ids[i]);
-        if (node->op == HEWN_OP_OUTLINE)
-            HEWN_TRY(make_table(listing, field, node, &tables[ids[i]], error));
-    }
-    needed[ids[count - 1]] = true;
-    for (size_t i = count; i-- > 0;) {
-        const hewn_node_data *node = hewn_field_node(field, ids[i]);
-        for (uint32_t k = first_operand(tables[ids[i]]); needed[ids[i]] && k < hewn_op_infos[node->op].operands; k++)
-            needed[node->operand[k]] = true;
-    }
-    return HEWN_OK;
-}
-
 static void add_steps(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
-                      const uint32_t *tables, const bool *needed, uint32_t *places)
+                      const hewn_table_use *uses, uint32_t *places)
 {
     for (size_t i = 0; i < count; i++) {
         const hewn_node_data *node = hewn_field_node(field, ids[i]);
-        if (!needed[ids[i]])
+        if (!uses[ids[i]].needed)
             continue;
         if (node->op == HEWN_OP_PAINT) {
             places[ids[i]] = places[node->operand[0]];
             continue;
         }
         places[ids[i]] = (uint32_t)listing->count;
-        add_step(listing, node, tables[ids[i]], places);
+        add_step(listing, node, &uses[ids[i]], places);
     }
 }
 
@@ -247,19 +181,18 @@ static hewn_result fill(hewn_listing *listing, const hewn_field *field, const ui
 {
     enum { PARAMETERS_MAX = 8 };
     size_t nodes = hewn_field_node_count(field);
-    uint32_t *places = hewn_alloc(nodes, sizeof *places), *tables = hewn_alloc_zero(nodes, sizeof *tables);
-    bool *needed = hewn_alloc_zero(nodes, sizeof *needed);
+    uint32_t *places = hewn_alloc(nodes, sizeof *places);
+    hewn_table_use *uses = hewn_alloc_zero(nodes, sizeof *uses);
     listing->steps = hewn_alloc_zero(count, sizeof *listing->steps);
     listing->parameters = hewn_alloc(count, PARAMETERS_MAX * sizeof *listing->parameters);
     hewn_result result = HEWN_OK;
-    if (!places || !tables || !needed || !listing->steps || !listing->parameters)
+    if (!places || !uses || !listing->steps || !listing->parameters)
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %zu operations", count);
     else
-        result = make_tables(listing, field, ids, count, chained, tables, needed, error);
+        result = hewn_listing_make_tables(listing, field, ids, count, chained, uses, error);
     if (result == HEWN_OK)
-        add_steps(listing, field, ids, count, tables, needed, places);
-    hewn_free(needed);
-    hewn_free(tables);
+        add_steps(listing, field, ids, count, uses, places);
+    hewn_free(uses);
     hewn_free(places);
     return result;
 }

@@ -54,6 +54,25 @@ hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn
                                 hewn_error *error);
 void hewn_listing_destroy(hewn_listing *listing);
 
+/* A parameter as devices have it. */
+float hewn_listing_rounded(double value);
+
+/* An edge of an outline so, with the reciprocal of the square of its length. */
+void hewn_listing_round_edge(const double edge[4], float out[HEWN_TABLE_SIDE]);
+
+/* What becomes of a node: whether it is listed at all, and if by a table, which (from 1 on) and of which coordinates. */
+typedef struct hewn_table_use {
+    bool needed;
+    uint32_t table;
+    uint32_t at[2]; /* nodes */
+    uint32_t most;  /* sides that a table of it may have, 0: any number */
+} hewn_table_use;
+
+/* Makes the tables of outlines with many sides, none where `chained` (tables.c). Outlines that lie apart and of which
+ * the least is taken, as of the letters of a text, are one. `uses` has an entry of zeros for each node. */
+hewn_result hewn_listing_make_tables(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
+                                     bool chained, hewn_table_use *uses, hewn_error *error);
+
 /* Whether the step reads memory of which it has the address: samples, or a table. */
 static inline bool hewn_listing_has_address(const hewn_code_step *step)
 {

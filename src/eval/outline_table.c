@@ -10,7 +10,8 @@
 enum {
     DEPTH_MOST = 12,      /* halvings of the square, and divisions of a cell */
     DIVISIONS = 3,        /* of one cell */
-    CROWDED = 8,          /* a cell of more sides is divided */
+    CROWDED = 12,         /* a cell of more sides is divided where the outline is close */
+    CROWDED_FAR = 64,     /* and elsewhere */
     SMALL = 4,            /* a cell is divided into so many a side */
     RING = 8,             /* cells across a ring */
     DIRECTIONS = 64,      /* for what is far away */
@@ -27,6 +28,7 @@ typedef struct pick {
     float *turns;
     uint32_t side_count, turn_count;
     bool odd;
+    bool close; /* the outline is hardly farther off than the box is large */
 } pick;
 
 typedef struct making {
@@ -60,23 +62,47 @@ static square widened(const making *own, const square *box)
 
 /* --- picking ------------------------------------------------------------------------------------------------------ */
 
-static double distance_from(const float *side, double x, double y)
+static double square_from(const float *side, double x, double y)
 {
     double ex = (double)side[2] - (double)side[0], ey = (double)side[3] - (double)side[1];
     double dx = x - (double)side[0], dy = y - (double)side[1], along = ex * ex + ey * ey;
     double t = along > 0 ? fmin(fmax((dx * ex + dy * ey) / along, 0), 1) : 0;
-    return hypot(dx - t * ex, dy - t * ey);
+    dx -= t * ex;
+    dy -= t * ey;
+    return dx * dx + dy * dy;
 }
 
-/* Marks the sides of `from` that can be nearest somewhere in the box by 1, the others by 0. From the middle a distance
- * changes by no more than the way. */
-static void find_near(making *own, const pick *from, const square *box)
+/* How far two sides' ends are apart at most. */
+static double spread(const float *a, const float *b)
+{
+    double most = 0;
+    for (int i = 0; i < 4; i++) {
+        double dx = (double)a[i & 2] - (double)b[2 * (i & 1)], dy = (double)a[(i & 2) + 1] - (double)b[2 * (i & 1) + 1];
+        most = fmax(most, dx * dx + dy * dy);
+    }
+    return sqrt(most);
+}
+
+/* How much a side can come nearer than another one somewhere in the box, against what is so in its middle. By no more
+ * than twice the way; and the distances from both change alike where the directions to them are alike. */
+static double gain(const float *side, double far, const float *other, double other_far, double reach)
+{
+    double least = fmin(far, other_far) - reach;
+    return reach * (least > 0 ? fmin(2, spread(side, other) / least) : 2);
+}
+
+/* Marks the sides of `from` that can be nearest somewhere in the box by 1, the others by 0. Returns the least distance
+ * in the middle. */
+static double find_near(making *own, const pick *from, const square *box)
 {
     double x = 0.5 * (box->lo[0] + box->hi[0]), y = 0.5 * (box->lo[1] + box->hi[1]);
     double reach = hypot(box->hi[0] - x, box->hi[1] - y), least = INFINITY, most = INFINITY;
     double slack = apart * (own->size + fabs(x) + fabs(y) + 2 * reach) + 1e-18;
+    const float *nearest = own->sides[0];
     for (uint32_t i = 0; i < from->side_count; i++) {
-        own->near[i] = distance_from(own->sides[from->sides[i]], x, y);
+        const float *side = own->sides[from->sides[i]];
+        own->near[i] = sqrt(square_from(side, x, y));
+        nearest = own->near[i] < least ? side : nearest;
         least = fmin(least, own->near[i]);
     }
     for (uint32_t i = 0; i < from->side_count; i++) {
@@ -84,12 +110,16 @@ static void find_near(making *own, const pick *from, const square *box)
             continue;
         double farthest = 0; /* at a corner, since a distance from what is convex is convex */
         for (int corner = 0; corner < 4; corner++)
-            farthest = fmax(farthest, distance_from(own->sides[from->sides[i]], corner & 1 ? box->hi[0] : box->lo[0],
-                                                    corner & 2 ? box->hi[1] : box->lo[1]));
-        most = fmin(most, farthest);
+            farthest = fmax(farthest, square_from(own->sides[from->sides[i]], corner & 1 ? box->hi[0] : box->lo[0],
+                                                  corner & 2 ? box->hi[1] : box->lo[1]));
+        most = fmin(most, sqrt(farthest));
     }
-    for (uint32_t i = 0; i < from->side_count; i++)
-        own->near[i] = own->near[i] - reach <= most + slack;
+    for (uint32_t i = 0; i < from->side_count; i++) {
+        double far = own->near[i];
+        own->near[i] = far - reach <= most + slack &&
+                       far <= least + slack + gain(own->sides[from->sides[i]], far, nearest, least, reach);
+    }
+    return least;
 }
 
 /* A height at which the parity turns, if it is between the box's ends; where it is below them it has turned everywhere.
@@ -161,7 +191,7 @@ static void descend(making *own, int depth, const square *place)
     pick *out = &own->picks[depth + 1];
     out->side_count = out->turn_count = 0;
     out->odd = from->odd;
-    find_near(own, from, &box);
+    out->close = find_near(own, from, &box) < box.hi[0] - box.lo[0];
     for (uint32_t i = 0; i < from->turn_count; i++)
         add_turn(out, &box, from->turns[i]);
     for (uint32_t i = 0; i < from->side_count; i++)
@@ -225,7 +255,9 @@ static void write_cell(making *own, int depth, const square *box, /* NOLINT(misc
                        size_t entry, int divisions)
 {
     const pick *from = &own->picks[depth];
-    if (from->side_count <= CROWDED || divisions == 0 || own->used > WORDS_MOST / 2) {
+    bool crowded = from->close ? from->side_count > CROWDED && divisions > 0
+                               : from->side_count > CROWDED_FAR && divisions > 0;
+    if (!crowded || own->used > WORDS_MOST / 2) {
         write_pick(own, from, entry);
         return;
     }
@@ -274,7 +306,7 @@ static void write_ring(making *own, uint32_t ring, size_t first)
         if (inside)
             continue;
         descend(own, 0, &cell);
-        write_cell(own, 1, &cell, 2 * (first + i), 1);
+        write_cell(own, 1, &cell, 2 * (first + i), DIVISIONS);
     }
 }
 
@@ -364,7 +396,7 @@ hewn_result hewn_outline_table_create(const float (*sides)[HEWN_TABLE_SIDE], uin
         return HEWN_OK;
     own.half = 1 / (double)inverse;
     uint32_t across = 8;
-    while (across < 64 && across * across < 4 * count)
+    while (across < 128 && across * across < 4 * count)
         across *= 2;
     own.failed = !make_room(&own);
     if (!own.failed)
