@@ -43,6 +43,17 @@ typedef struct making {
     bool crowded, failed;
 } making;
 
+/* fmin() and fmax() are calls, because of what they do about NaN, and there is none here. */
+static inline double lesser(double a, double b)
+{
+    return b < a ? b : a;
+}
+
+static inline double greater(double a, double b)
+{
+    return b > a ? b : a;
+}
+
 typedef struct square {
     double lo[2], hi[2];
 } square;
@@ -52,7 +63,7 @@ static square widened(const making *own, const square *box)
     square out = *box;
     double far = own->size;
     for (int i = 0; i < 2; i++)
-        far += fmax(fabs(box->lo[i]), fabs(box->hi[i]));
+        far += greater(fabs(box->lo[i]), fabs(box->hi[i]));
     for (int i = 0; i < 2; i++) {
         out.lo[i] -= apart * far + 1e-18;
         out.hi[i] += apart * far + 1e-18;
@@ -66,7 +77,7 @@ static double square_from(const float *side, double x, double y)
 {
     double ex = (double)side[2] - (double)side[0], ey = (double)side[3] - (double)side[1];
     double dx = x - (double)side[0], dy = y - (double)side[1], along = ex * ex + ey * ey;
-    double t = along > 0 ? fmin(fmax((dx * ex + dy * ey) / along, 0), 1) : 0;
+    double t = along > 0 ? lesser(greater((dx * ex + dy * ey) / along, 0), 1) : 0;
     dx -= t * ex;
     dy -= t * ey;
     return dx * dx + dy * dy;
@@ -78,7 +89,7 @@ static double spread(const float *a, const float *b)
     double most = 0;
     for (int i = 0; i < 4; i++) {
         double dx = (double)a[i & 2] - (double)b[2 * (i & 1)], dy = (double)a[(i & 2) + 1] - (double)b[2 * (i & 1) + 1];
-        most = fmax(most, dx * dx + dy * dy);
+        most = greater(most, dx * dx + dy * dy);
     }
     return sqrt(most);
 }
@@ -87,8 +98,8 @@ static double spread(const float *a, const float *b)
  * than twice the way; and the distances from both change alike where the directions to them are alike. */
 static double gain(const float *side, double far, const float *other, double other_far, double reach)
 {
-    double least = fmin(far, other_far) - reach;
-    return reach * (least > 0 ? fmin(2, spread(side, other) / least) : 2);
+    double least = lesser(far, other_far) - reach;
+    return reach * (least > 0 ? lesser(2, spread(side, other) / least) : 2);
 }
 
 /* Marks the sides of `from` that can be nearest somewhere in the box by 1, the others by 0. Returns the least distance
@@ -103,16 +114,16 @@ static double find_near(making *own, const pick *from, const square *box)
         const float *side = own->sides[from->sides[i]];
         own->near[i] = sqrt(square_from(side, x, y));
         nearest = own->near[i] < least ? side : nearest;
-        least = fmin(least, own->near[i]);
+        least = lesser(least, own->near[i]);
     }
     for (uint32_t i = 0; i < from->side_count; i++) {
         if (own->near[i] > least + 2 * reach + slack)
             continue;
         double farthest = 0; /* at a corner, since a distance from what is convex is convex */
         for (int corner = 0; corner < 4; corner++)
-            farthest = fmax(farthest, square_from(own->sides[from->sides[i]], corner & 1 ? box->hi[0] : box->lo[0],
+            farthest = greater(farthest, square_from(own->sides[from->sides[i]], corner & 1 ? box->hi[0] : box->lo[0],
                                                   corner & 2 ? box->hi[1] : box->lo[1]));
-        most = fmin(most, sqrt(farthest));
+        most = lesser(most, sqrt(farthest));
     }
     for (uint32_t i = 0; i < from->side_count; i++) {
         double far = own->near[i];
@@ -137,7 +148,7 @@ static void add_turn(pick *out, const square *box, float height)
 static int crosses(const float *side, const square *box)
 {
     double ax = (double)side[0], ay = (double)side[1], ex = (double)side[2] - ax, ey = (double)side[3] - ay;
-    double bottom = fmax(box->lo[1], fmin(ay, (double)side[3])), top = fmin(box->hi[1], fmax(ay, (double)side[3]));
+    double bottom = greater(box->lo[1], lesser(ay, (double)side[3])), top = lesser(box->hi[1], greater(ay, (double)side[3]));
     int left = 0;
     for (int corner = 0; corner < 4; corner++) {
         double dx = (corner & 1 ? box->hi[0] : box->lo[0]) - ax, dy = (corner & 2 ? top : bottom) - ay;
@@ -152,7 +163,7 @@ static int crosses(const float *side, const square *box)
 /* Leaves a side out, which is nearest nowhere; false where its crossings must be computed all the same. */
 static bool leave_out(pick *out, const square *box, const float *side)
 {
-    double bottom = (double)fminf(side[1], side[3]), top = (double)fmaxf(side[1], side[3]);
+    double bottom = lesser((double)side[1], (double)side[3]), top = greater((double)side[1], (double)side[3]);
     if (side[1] == side[3] || top <= box->lo[1] || bottom > box->hi[1])
         return true;
     int crossed = crosses(side, box);
@@ -324,7 +335,7 @@ static void write_far(making *own, size_t first)
             for (int end = 0; end < 4; end += 2) {
                 double there = x * (double)own->sides[i][end] + y * (double)own->sides[i][end + 1];
                 farthest = there > most ? i : farthest;
-                most = fmax(most, there);
+                most = greater(most, there);
             }
         taken[farthest] = true;
     }
@@ -351,12 +362,12 @@ static void measure(making *own)
     double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
     for (uint32_t i = 0; i < own->count; i++)
         for (int k = 0; k < 4; k++) {
-            lo[k & 1] = fmin(lo[k & 1], (double)own->sides[i][k]);
-            hi[k & 1] = fmax(hi[k & 1], (double)own->sides[i][k]);
+            lo[k & 1] = lesser(lo[k & 1], (double)own->sides[i][k]);
+            hi[k & 1] = greater(hi[k & 1], (double)own->sides[i][k]);
         }
     for (int i = 0; i < 2; i++)
         own->middle[i] = (double)(float)(0.5 * (lo[i] + hi[i]));
-    own->half = 0.625 * fmax(hi[0] - lo[0], hi[1] - lo[1]);
+    own->half = 0.625 * greater(hi[0] - lo[0], hi[1] - lo[1]);
 }
 
 static bool make_room(making *own)
