@@ -176,8 +176,8 @@ static void add_steps(hewn_listing *listing, const hewn_field *field, const uint
     }
 }
 
-static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
-                        bool chained, hewn_error *error)
+static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count, bool chained,
+                        hewn_error *error)
 {
     enum { PARAMETERS_MAX = 8 };
     size_t nodes = hewn_field_node_count(field);

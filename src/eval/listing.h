@@ -60,7 +60,8 @@ float hewn_listing_rounded(double value);
 /* An edge of an outline so, with the reciprocal of the square of its length. */
 void hewn_listing_round_edge(const double edge[4], float out[HEWN_TABLE_SIDE]);
 
-/* What becomes of a node: whether it is listed at all, and if by a table, which (from 1 on) and of which coordinates. */
+/* What becomes of a node: whether it is listed at all, and if by a table, which (from 1 on) and of which coordinates.
+ */
 typedef struct hewn_table_use {
     bool needed;
     uint32_t table;

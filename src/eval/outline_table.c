@@ -122,7 +122,7 @@ static double find_near(making *own, const pick *from, const square *box)
         double farthest = 0; /* at a corner, since a distance from what is convex is convex */
         for (int corner = 0; corner < 4; corner++)
             farthest = greater(farthest, square_from(own->sides[from->sides[i]], corner & 1 ? box->hi[0] : box->lo[0],
-                                                  corner & 2 ? box->hi[1] : box->lo[1]));
+                                                     corner & 2 ? box->hi[1] : box->lo[1]));
         most = lesser(most, sqrt(farthest));
     }
     for (uint32_t i = 0; i < from->side_count; i++) {
@@ -148,7 +148,8 @@ static void add_turn(pick *out, const square *box, float height)
 static int crosses(const float *side, const square *box)
 {
     double ax = (double)side[0], ay = (double)side[1], ex = (double)side[2] - ax, ey = (double)side[3] - ay;
-    double bottom = greater(box->lo[1], lesser(ay, (double)side[3])), top = lesser(box->hi[1], greater(ay, (double)side[3]));
+    double bottom = greater(box->lo[1], lesser(ay, (double)side[3])),
+           top = lesser(box->hi[1], greater(ay, (double)side[3]));
     int left = 0;
     for (int corner = 0; corner < 4; corner++) {
         double dx = (corner & 1 ? box->hi[0] : box->lo[0]) - ax, dy = (corner & 2 ? top : bottom) - ay;
@@ -240,8 +241,8 @@ static void write_pick(making *own, const pick *from, size_t entry)
     if (own->failed)
         return;
     own->words[entry] = (uint32_t)at;
-    own->words[entry + 1] = from->side_count | from->turn_count << HEWN_TABLE_TURNS_AT |
-                            (from->odd ? 1U : 0U) << HEWN_TABLE_ODD_AT;
+    own->words[entry + 1] =
+        from->side_count | from->turn_count << HEWN_TABLE_TURNS_AT | (from->odd ? 1U : 0U) << HEWN_TABLE_ODD_AT;
     if (from->turn_count > 0)
         memcpy(own->words + at, from->turns, from->turn_count * sizeof *own->words);
     at += from->turn_count;
@@ -266,8 +267,8 @@ static void write_cell(making *own, int depth, const square *box, /* NOLINT(misc
                        size_t entry, int divisions)
 {
     const pick *from = &own->picks[depth];
-    bool crowded = from->close ? from->side_count > CROWDED && divisions > 0
-                               : from->side_count > CROWDED_FAR && divisions > 0;
+    bool crowded =
+        from->close ? from->side_count > CROWDED && divisions > 0 : from->side_count > CROWDED_FAR && divisions > 0;
     if (!crowded || own->used > WORDS_MOST / 2) {
         write_pick(own, from, entry);
         return;
@@ -421,8 +422,9 @@ hewn_result hewn_outline_table_create(const float (*sides)[HEWN_TABLE_SIDE], uin
         hewn_free(own.words);
         return own.failed ? hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the table of an outline") : HEWN_OK;
     }
-    *out = (hewn_outline_table){
-        .words = own.words, .word_count = own.used, .longest = own.longest,
-        .numbers = {size, (float)own.middle[0], (float)own.middle[1], inverse, (float)across}};
+    *out = (hewn_outline_table){.words = own.words,
+                                .word_count = own.used,
+                                .longest = own.longest,
+                                .numbers = {size, (float)own.middle[0], (float)own.middle[1], inverse, (float)across}};
     return HEWN_OK;
 }

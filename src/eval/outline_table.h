@@ -1,11 +1,11 @@
-/* A table that tells a shader which sides of an outline matter where: cells of the plane, each with the sides that can be
- * nearest somewhere in it, and with what the others do to the parity of crossings. Made on the host, read by
+/* A table that tells a shader which sides of an outline matter where: cells of the plane, each with the sides that can
+ * be nearest somewhere in it, and with what the others do to the parity of crossings. Made on the host, read by
  * shaders/field/outline_table_point.glsl. Private to this room.
  *
  * Distances and signs have the bits that walking over all sides gives, in single precision and for every point up to
  * HEWN_TABLE_REACH times the outline's size away from it: what is left out is farther off than rounding can hide, and a
- * side whose crossing rounding could decide stays. Farther out a cell has the outermost sides in 64 directions, by which
- * a distance is off by less than what intervals allow for rounding. */
+ * side whose crossing rounding could decide stays. Farther out a cell has the outermost sides in 64 directions, by
+ * which a distance is off by less than what intervals allow for rounding. */
 #ifndef HEWN_SRC_EVAL_OUTLINE_TABLE_H
 #define HEWN_SRC_EVAL_OUTLINE_TABLE_H
 
@@ -16,14 +16,15 @@
  *
  * Words: two for each cell, the first entry's word and counts: sides, then turns from bit 14 on, then from bit 28 on
  * whether an odd number of sides is crossed, and in bit 31 whether the cell is divided: then the first entry is that of
- * its own cells. At an entry's word stand the heights from which on a ray along x crosses another side that is left out,
- * then the sides: ax, ay, bx, by, and the inverse of the square of the length. */
+ * its own cells. At an entry's word stand the heights from which on a ray along x crosses another side that is left
+ * out, then the sides: ax, ay, bx, by, and the inverse of the square of the length. */
 enum {
     HEWN_TABLE_RINGS = 6,
     HEWN_TABLE_TURNS_AT = 14,
     HEWN_TABLE_ODD_AT = 28,
     HEWN_TABLE_SIDE = 5,
-    HEWN_TABLE_NUMBERS = 5 /* the outline's size, the middle's x and y, the inverse of half the square, cells across it */
+    HEWN_TABLE_NUMBERS =
+        5 /* the outline's size, the middle's x and y, the inverse of half the square, cells across it */
 };
 #define HEWN_TABLE_REACH 4096
 

@@ -1,4 +1,5 @@
-/* Samples of fields and tables of outlines, brought to the device once for all kernels of a code. Private to this room. */
+/* Samples of fields and tables of outlines, brought to the device once for all kernels of a code. Private to this room.
+ */
 #ifndef HEWN_SRC_EVAL_SAMPLES_H
 #define HEWN_SRC_EVAL_SAMPLES_H
 
@@ -18,8 +19,8 @@ typedef struct hewn_samples {
     size_t count, capacity;
 } hewn_samples;
 
-/* Brings what the listing's steps read to the device, each sampling and table once, and writes the addresses into the listing.
- * HEWN_OUT_OF_DEVICE_MEMORY, HEWN_LIMIT, HEWN_OUT_OF_MEMORY, HEWN_DEVICE_LOST. */
+/* Brings what the listing's steps read to the device, each sampling and table once, and writes the addresses into the
+ * listing. HEWN_OUT_OF_DEVICE_MEMORY, HEWN_LIMIT, HEWN_OUT_OF_MEMORY, HEWN_DEVICE_LOST. */
 hewn_result hewn_samples_bring(hewn_device *device, hewn_samples *samples, hewn_listing *listing, hewn_error *error);
 
 /* Writes the addresses of what is there already; false where something is not. */

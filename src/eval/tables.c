@@ -8,8 +8,8 @@
 #include "field/outline.h"
 
 enum {
-    TABLE_FROM = 24,   /* sides: fewer cost less written out than a table that is read */
-    TABLE_MOST = 250,  /* sides in one place: a loop over more is too long for drivers that bound those */
+    TABLE_FROM = 24,     /* sides: fewer cost less written out than a table that is read */
+    TABLE_MOST = 250,    /* sides in one place: a loop over more is too long for drivers that bound those */
     TOGETHER_MOST = 1200 /* sides of several outlines in one table: far from a long row too many of them matter */
 };
 
@@ -207,8 +207,7 @@ static hewn_result make_table(hewn_listing *listing, const joining *own, uint32_
         use->table = (uint32_t)++listing->table_count;
         use->at[0] = members[0].node->operand[1];
         use->at[1] = members[0].node->operand[2];
-    }
-    else {
+    } else {
         use->most = count > 1 ? all / 2 : 0;
     }
     hewn_free(edges);

@@ -42,11 +42,10 @@ static inline float blend(float a, float b, float size, float inverse)
     r[i] = (EXPRESSION);                                                                                               \
     break
 
-/* With a count that the compiler knows a step is a few instructions without a loop: rays in one cell seldom fill more
- * than a vector or two. */
-static inline __attribute__((always_inline)) void run_so_many(const hewn_lane_tape *tape, float *rows,
-                                                              const hewn_lane_points *points, const uint32_t count)
+HEWN_LANE_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_lane_points *points,
+                                 uint32_t count)
 {
+    count &= ~(HEWN_LANE_BLOCK - 1U);
     for (uint32_t at = 0; at < tape->count; at++) {
         const hewn_lane_step *step = &tape->steps[at];
         float *restrict r = rows + (size_t)step->out * HEWN_LANES;
@@ -75,16 +74,6 @@ static inline __attribute__((always_inline)) void run_so_many(const hewn_lane_ta
         case HEWN_LANE_OUTLINE: hewn_lane_outline_value(&tape->outlines[step->node], a, b, r, count); break;
         default: other(tape, step, rows, count);
         }
-    }
-}
-
-HEWN_LANE_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_lane_points *points,
-                                 uint32_t count)
-{
-    switch (count / HEWN_LANE_BLOCK) {
-    case 1: run_so_many(tape, rows, points, HEWN_LANE_BLOCK); break;
-    case 2: run_so_many(tape, rows, points, 2 * HEWN_LANE_BLOCK); break;
-    default: run_so_many(tape, rows, points, count & ~(HEWN_LANE_BLOCK - 1U));
     }
 }
 

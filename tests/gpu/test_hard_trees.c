@@ -228,8 +228,7 @@ static void outlines_are_the_same_by_tables(void **state)
     hewn_node root = hewn_difference(field, wheel, hewn_extrude(field, hewn_regular_polygon(field, 6, 0.5), 1));
     GPU_TEST_TRY(hewn_field_status(field, &error));
     const hewn_extract_desc desc = {.bounds = bounds, .resolution = 50, .method = HEWN_METHOD_DC};
-    const hewn_code_desc hows[3] = {
-        {0}, {.chained = true}, {.chained = true, .evaluation = HEWN_EVALUATION_STRAIGHT}};
+    const hewn_code_desc hows[3] = {{0}, {.chained = true}, {.chained = true, .evaluation = HEWN_EVALUATION_STRAIGHT}};
     hewn_triangles meshes[3];
     for (int i = 0; i < 3; i++) {
         hewn_extractor *extractor;

@@ -1,5 +1,5 @@
-/* Outlines of many sides are read from tables of cells: values, gradients and bounds have the bits that walking over all
- * sides gives. */
+/* Outlines of many sides are read from tables of cells: values, gradients and bounds have the bits that walking over
+ * all sides gives. */
 #include "../unit/test_field_support.h"
 #include "gpu_test.h"
 
