@@ -106,11 +106,11 @@ static hewn_result add_outline(joining *own, uint32_t id, hewn_error *error)
 
 static bool fit_together(const joining *own, const hewn_node_data *minimum)
 {
-    const member *lists[2] = {NULL, NULL};
+    const member *lists[2];
     uint32_t counts[2], sides = 0;
     for (int k = 0; k < 2; k++) {
         counts[k] = own->of[minimum->operand[k]].count;
-        if (counts[k] == 0)
+        if (counts[k] == 0 || !own->members)
             return false;
         lists[k] = own->members + own->of[minimum->operand[k]].first;
     }
