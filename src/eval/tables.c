@@ -224,7 +224,7 @@ static hewn_result use_tables(hewn_listing *listing, const joining *own, const u
         hewn_table_use *use = &uses[ids[i]];
         if (!use->needed)
             continue;
-        if (own->of[ids[i]].count > 0)
+        if (own->members && own->of[ids[i]].count > 0)
             HEWN_TRY(make_table(listing, own, ids[i], use, error));
         for (uint32_t k = 0; k < 2 && use->table; k++)
             uses[use->at[k]].needed = true;
