@@ -1,11 +1,8 @@
-/* Samples at points. src/field/sampling.h has their layout in memory. */
-//: sampled
+/* Words that fields read from memory, and samples at points. src/field/sampling.h has their layout. */
+//: words
 layout(buffer_reference, std430, buffer_reference_align = 4) readonly buffer f_samples { uint at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer f_two_samples { uvec2 at; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer f_three_samples { uvec3 at; };
-
-#define F_SAMPLED float low, const float middle, const float high, const float nx, const float ny, const float nz, \
-    const float grows, const float most
 
 /* An address comes as three whole numbers of 22 bits. */
 uvec2 f_samples_of(const float low, const float middle, const float high)
@@ -25,6 +22,10 @@ vec2 f_pair(const uvec2 s, const uint word)
 {
     return uintBitsToFloat(f_two_samples(f_word_of(s, word)).at);
 }
+
+//: sampled words
+#define F_SAMPLED float low, const float middle, const float high, const float nx, const float ny, const float nz, \
+    const float grows, const float most
 
 /* The samples at the corners of the cell that a point is in, low ones along z first; how far along it is, and how many
  * such cells there are in one of the lattice; and what is left of the point past the lattice. */

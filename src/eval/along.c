@@ -46,7 +46,8 @@ static bool are_alike(const hewn_listing *listing, uint32_t a, uint32_t b)
         alike = listing->parameters[one->parameter + i] == listing->parameters[other->parameter + i];
     if (one->op == HEWN_OP_CONSTANT || !alike)
         return alike;
-    if (!one->function || !other->function || one->samples || strcmp(one->function, other->function) != 0)
+    if (!one->function || !other->function || hewn_listing_has_address(one) ||
+        strcmp(one->function, other->function) != 0)
         return false;
     for (uint32_t i = 0; i < one->in_count; i++) {
         const hewn_code_step *in[2] = {&listing->steps[one->in[i]], &listing->steps[other->in[i]]};

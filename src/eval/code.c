@@ -26,10 +26,10 @@ static uint64_t parameter_bytes(const hewn_listing *listing)
 }
 
 /* Their addresses are among the numbers and differ from run to run: code that has them would be compiled each time. */
-static bool has_samples(const hewn_listing *listing)
+static bool has_addresses(const hewn_listing *listing)
 {
     for (size_t i = 0; i < listing->count; i++)
-        if (listing->steps[i].samples)
+        if (hewn_listing_has_address(&listing->steps[i]))
             return true;
     return false;
 }
@@ -41,7 +41,7 @@ static hewn_number_place choose_place(const hewn_device *device, const hewn_list
     uint64_t most = numbers == HEWN_NUMBERS_AUTO ? CHOSEN_TABLE_BYTES : TABLE_BYTES;
     bool table = bytes <= most && bytes <= device->max_uniform_range;
     bool in_code = numbers == HEWN_NUMBERS_IN_CODE || (numbers == HEWN_NUMBERS_AUTO && on_cpu && !table);
-    if (in_code && !has_samples(listing))
+    if (in_code && !has_addresses(listing))
         return HEWN_PLACE_CODE;
     if (on_cpu && table)
         return HEWN_PLACE_TABLE;
@@ -187,6 +187,19 @@ enum { LISTED_FROM = 12, READING = 60, A_SLOT = 6 };
  * and written out one by one they take longer to compile than lists take to run. */
 enum { LISTED_EDGES = 64 };
 
+/* Drivers that bound loops give an invocation 65,535 iterations: one that solves sixteen vertices asks up to fourteen
+ * values for each, so that this much of a value's tables is walked over to its end. With lists it is four times four
+ * vertices, and most of the lists are short. */
+enum { WAY_MOST = 280, LISTED_WAY_MOST = 560 };
+
+static uint64_t longest_way(const hewn_listing *listing)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < listing->table_count; i++)
+        sum += listing->tables[i].longest;
+    return sum;
+}
+
 static bool lists_pay(const hewn_code *code)
 {
     const hewn_instruction_set *set = &code->instructions.set;
@@ -196,7 +209,7 @@ static bool lists_pay(const hewn_code *code)
         all += hewn_listing_weight(&code->listing.steps[i]);
         edges += code->listing.steps[i].op == HEWN_OP_EDGE;
     }
-    if (edges > LISTED_EDGES)
+    if (edges > LISTED_EDGES || longest_way(&code->listing) > WAY_MOST)
         return true;
     for (uint32_t i = 0; i < set->body_count; i++)
         one += set->bodies[i].weight;
@@ -217,6 +230,33 @@ static hewn_result choose_evaluation(hewn_code *code, hewn_evaluation evaluation
     return HEWN_OK;
 }
 
+static hewn_result list_field(hewn_device *device, hewn_code *code, const hewn_field *field, hewn_node root,
+                              const hewn_code_desc *desc, hewn_error *error)
+{
+    HEWN_TRY(hewn_listing_create(&code->listing, field, root, code->chained, error));
+    code->place = choose_place(device, &code->listing, desc->numbers);
+    code->listing.fixed = code->place == HEWN_PLACE_CODE;
+    HEWN_TRY(choose_blocks(code, error));
+    HEWN_TRY(hewn_samples_bring(device, &code->samples, &code->listing, error));
+    return choose_evaluation(code, desc->evaluation, error);
+}
+
+/* With tables of outlines, unless walking over them would take too many turns. */
+static hewn_result write_field(hewn_device *device, hewn_code *code, const hewn_field *field, hewn_node root,
+                               const hewn_code_desc *desc, hewn_error *error)
+{
+    code->chained = desc->chained;
+    HEWN_TRY(list_field(device, code, field, root, desc, error));
+    if (longest_way(&code->listing) > (code->listed ? LISTED_WAY_MOST : WAY_MOST)) {
+        hewn_instructions_destroy(&code->instructions);
+        hewn_listing_destroy(&code->listing);
+        code->choice = (hewn_library_choice){0};
+        code->chained = true;
+        HEWN_TRY(list_field(device, code, field, root, desc, error));
+    }
+    return write_parameters(device, code, error);
+}
+
 hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, hewn_node root,
                                 const hewn_code_desc *desc, hewn_code **out, hewn_error *error)
 {
@@ -229,18 +269,7 @@ hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, he
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for a field's code");
     }
     code->walking.whole = desc->whole;
-    hewn_result result = hewn_listing_create(&code->listing, field, root, error);
-    if (result == HEWN_OK) {
-        code->place = choose_place(device, &code->listing, desc->numbers);
-        code->listing.fixed = code->place == HEWN_PLACE_CODE;
-        result = choose_blocks(code, error);
-    }
-    if (result == HEWN_OK)
-        result = hewn_samples_bring(device, &code->samples, &code->listing, error);
-    if (result == HEWN_OK)
-        result = choose_evaluation(code, desc->evaluation, error);
-    if (result == HEWN_OK)
-        result = write_parameters(device, code, error);
+    hewn_result result = write_field(device, code, field, root, desc, error);
     if (result != HEWN_OK)
         hewn_code_destroy(device, &code);
     *out = code;
@@ -319,7 +348,7 @@ hewn_result hewn_code_renumber(hewn_code *code, const hewn_field *field, hewn_no
     if (code->place == HEWN_PLACE_CODE && !code->listed)
         return HEWN_OK;
     hewn_listing listing;
-    HEWN_TRY(hewn_listing_create(&listing, field, root, error));
+    HEWN_TRY(hewn_listing_create(&listing, field, root, code->chained, error));
     if (!hewn_samples_find(&code->samples, &listing)) {
         hewn_listing_destroy(&listing);
         return HEWN_OK;

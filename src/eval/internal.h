@@ -29,6 +29,7 @@ typedef struct hewn_list_block {
 struct hewn_code {
     hewn_listing listing;
     bool listed;
+    bool chained; /* outlines have no tables */
     hewn_walking walking;
     hewn_instructions
         instructions; /* of listed code; `parameters` holds their words and from `entries_at` on the list */

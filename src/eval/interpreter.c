@@ -103,7 +103,7 @@ static uint32_t first_body(const walk *own)
 /* Whether a body goes by an address among its numbers: those of other bodies must not be taken for one. */
 static bool reads_samples(const char *body)
 {
-    return strstr(body, "f_sampled(") != NULL;
+    return strstr(body, "f_sampled(") != NULL || strstr(body, "f_outline_table(") != NULL;
 }
 
 /* How much all bodies that are made of statements begin with, in bytes: it is computed once for all. The copy apart,

@@ -6,20 +6,23 @@
 
 extern const unsigned char hewn_text_point[], hewn_text_noise_point[], hewn_text_outline_point[], hewn_text_interval[],
     hewn_text_noise_interval[], hewn_text_gradient[], hewn_text_noise_gradient[], hewn_text_sampled_point[],
-    hewn_text_sampled_interval[], hewn_text_sampled_gradient[];
+    hewn_text_sampled_interval[], hewn_text_sampled_gradient[], hewn_text_outline_table_point[],
+    hewn_text_outline_table_interval[], hewn_text_outline_table_gradient[];
 
 static const char marker[] = "\n//: ";
 
 /* The files that a text is made of, NULL after the last. */
-enum { FILES_MAX = 5 };
+enum { FILES_MAX = 6 };
 
 static const char *file_of(hewn_library_text which, int file)
 {
     static const unsigned char *const files[HEWN_LIBRARY_TEXTS][FILES_MAX] = {
         [HEWN_LIBRARY_POINT] = {hewn_text_point, hewn_text_noise_point, hewn_text_outline_point,
-                                hewn_text_sampled_point},
-        [HEWN_LIBRARY_INTERVAL] = {hewn_text_interval, hewn_text_noise_interval, hewn_text_sampled_interval},
-        [HEWN_LIBRARY_GRADIENT] = {hewn_text_gradient, hewn_text_noise_gradient, hewn_text_sampled_gradient}};
+                                hewn_text_sampled_point, hewn_text_outline_table_point},
+        [HEWN_LIBRARY_INTERVAL] = {hewn_text_interval, hewn_text_noise_interval, hewn_text_sampled_interval,
+                                   hewn_text_outline_table_interval},
+        [HEWN_LIBRARY_GRADIENT] = {hewn_text_gradient, hewn_text_noise_gradient, hewn_text_sampled_gradient,
+                                   hewn_text_outline_table_gradient}};
     return (const char *)files[which][file];
 }
 

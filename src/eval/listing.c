@@ -9,8 +9,7 @@
 #include "base/error.h"
 #include "field/sampling.h"
 
-/* A parameter as the GPU has it. */
-static float rounded(double value)
+float hewn_listing_rounded(double value)
 {
     float single = (float)value;
     return fabsf(single) < FLT_MIN ? 0.0f : single;
@@ -18,7 +17,7 @@ static float rounded(double value)
 
 static void put(hewn_listing *listing, hewn_code_step *step, double value)
 {
-    listing->parameters[listing->parameter_count++] = rounded(value);
+    listing->parameters[listing->parameter_count++] = hewn_listing_rounded(value);
     step->parameter_count++;
 }
 
@@ -29,13 +28,13 @@ static void put_affine(hewn_listing *listing, hewn_code_step *step, const double
     uint32_t kept = 0;
     double factor[3];
     for (uint32_t i = 0; i < 3; i++)
-        if (rounded(factors[i]) != 0) {
+        if (hewn_listing_rounded(factors[i]) != 0) {
             factor[kept] = factors[i];
             step->in[kept++] = step->in[i];
         }
     step->in_count = kept;
     step->function = "affine";
-    if (kept == 1 && rounded(factor[0]) == 1) {
+    if (kept == 1 && hewn_listing_rounded(factor[0]) == 1) {
         step->function = "shift";
         kept = 0;
     }
@@ -60,14 +59,12 @@ static void put_cone(hewn_listing *listing, hewn_code_step *step, const double *
     put(listing, step, 0.5 * (p[0] + p[1]));
 }
 
-/* With the reciprocal of the square of the edge's length. */
 static void put_edge(hewn_listing *listing, hewn_code_step *step, const double *p)
 {
-    for (int i = 0; i < 4; i++)
-        put(listing, step, p[i]);
-    double x = (double)rounded(p[2]) - (double)rounded(p[0]), y = (double)rounded(p[3]) - (double)rounded(p[1]);
-    double square = x * x + y * y;
-    put(listing, step, square > 0 ? fmin(1 / square, 1e29) : 0);
+    float edge[HEWN_TABLE_SIDE];
+    hewn_listing_round_edge(p, edge);
+    for (int i = 0; i < HEWN_TABLE_SIDE; i++)
+        put(listing, step, (double)edge[i]);
 }
 
 /* Where the samples are on the device, which whoever brings them there writes over the first three numbers; the cells
@@ -129,17 +126,33 @@ bool hewn_listing_is_plain(const hewn_listing *listing, const hewn_code_step *st
             op == HEWN_OP_MAX);
 }
 
-static void add_step(hewn_listing *listing, const hewn_node_data *node, const uint32_t *places)
+/* Where the table is, as with samples, and what it says of itself. */
+static void put_table(hewn_listing *listing, hewn_code_step *step, uint32_t table)
+{
+    for (int i = 0; i < HEWN_ADDRESS_NUMBERS; i++)
+        put(listing, step, 0);
+    for (int i = 0; i < HEWN_TABLE_NUMBERS; i++)
+        put(listing, step, (double)listing->tables[table - 1].numbers[i]);
+    step->function = "outline_table";
+    step->table = table;
+}
+
+static void add_step(hewn_listing *listing, const hewn_node_data *node, const hewn_table_use *use,
+                     const uint32_t *places)
 {
     const hewn_op_info *info = &hewn_op_infos[node->op];
     hewn_code_step *step = &listing->steps[listing->count++];
-    *step = (hewn_code_step){.op = node->op,
-                             .function = info->name,
-                             .in_count = info->operands,
-                             .parameter = (uint32_t)listing->parameter_count};
-    for (uint32_t i = 0; i < info->operands; i++)
-        step->in[i] = places[node->operand[i]];
-    put_parameters(listing, step, node);
+    *step = (hewn_code_step){.op = node->op, .function = info->name, .parameter = (uint32_t)listing->parameter_count};
+    if (use->table) {
+        step->op = HEWN_OP_OUTLINE;
+        for (int i = 0; i < 2; i++)
+            step->in[step->in_count++] = places[use->at[i]];
+        put_table(listing, step, use->table);
+    } else {
+        for (uint32_t i = 0; i < info->operands; i++)
+            step->in[step->in_count++] = places[node->operand[i]];
+        put_parameters(listing, step, node);
+    }
     if (node->op <= HEWN_OP_Z)
         step->axes = 1u << (node->op - HEWN_OP_X);
     for (uint32_t i = 0; i < step->in_count; i++)
@@ -147,34 +160,51 @@ static void add_step(hewn_listing *listing, const hewn_node_data *node, const ui
     hewn_code_step_reach(listing, step);
 }
 
-static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
-                        hewn_error *error)
+static void add_steps(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count,
+                      const hewn_table_use *uses, uint32_t *places)
 {
-    enum { PARAMETERS_MAX = 8 };
-    uint32_t *places = hewn_alloc(hewn_field_node_count(field), sizeof *places);
-    listing->steps = hewn_alloc_zero(count, sizeof *listing->steps);
-    listing->parameters = hewn_alloc(count, PARAMETERS_MAX * sizeof *listing->parameters);
-    bool enough = places && listing->steps && listing->parameters;
-    for (size_t i = 0; enough && i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         const hewn_node_data *node = hewn_field_node(field, ids[i]);
+        if (!uses[ids[i]].needed)
+            continue;
         if (node->op == HEWN_OP_PAINT) {
             places[ids[i]] = places[node->operand[0]];
             continue;
         }
         places[ids[i]] = (uint32_t)listing->count;
-        add_step(listing, node, places);
+        add_step(listing, node, &uses[ids[i]], places);
     }
-    hewn_free(places);
-    return enough ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %zu operations", count);
 }
 
-hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, hewn_error *error)
+static hewn_result fill(hewn_listing *listing, const hewn_field *field, const uint32_t *ids, size_t count, bool chained,
+                        hewn_error *error)
+{
+    enum { PARAMETERS_MAX = 8 };
+    size_t nodes = hewn_field_node_count(field);
+    uint32_t *places = hewn_alloc(nodes, sizeof *places);
+    hewn_table_use *uses = hewn_alloc_zero(nodes, sizeof *uses);
+    listing->steps = hewn_alloc_zero(count, sizeof *listing->steps);
+    listing->parameters = hewn_alloc(count, PARAMETERS_MAX * sizeof *listing->parameters);
+    hewn_result result = HEWN_OK;
+    if (!places || !uses || !listing->steps || !listing->parameters)
+        result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory listing %zu operations", count);
+    else
+        result = hewn_listing_make_tables(listing, field, ids, count, chained, uses, error);
+    if (result == HEWN_OK)
+        add_steps(listing, field, ids, count, uses, places);
+    hewn_free(uses);
+    hewn_free(places);
+    return result;
+}
+
+hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn_node root, bool chained,
+                                hewn_error *error)
 {
     memset(out, 0, sizeof *out);
     uint32_t *ids;
     size_t count;
     HEWN_TRY(hewn_field_live_nodes(field, root, &ids, &count, error));
-    hewn_result result = fill(out, field, ids, count, error);
+    hewn_result result = fill(out, field, ids, count, chained, error);
     hewn_free(ids);
     if (result == HEWN_OK)
         result = hewn_listing_part(out, error);
@@ -185,6 +215,9 @@ hewn_result hewn_listing_create(hewn_listing *out, const hewn_field *field, hewn
 
 void hewn_listing_destroy(hewn_listing *listing)
 {
+    for (size_t i = 0; i < listing->table_count; i++)
+        hewn_free(listing->tables[i].words);
+    hewn_free(listing->tables);
     hewn_free(listing->steps);
     hewn_free(listing->parameters);
     memset(listing, 0, sizeof *listing);
@@ -194,6 +227,8 @@ uint32_t hewn_listing_weight(const hewn_code_step *step)
 {
     if (!step->function)
         return 0;
+    if (step->table)
+        return 150;
     switch (step->op) {
     case HEWN_OP_SIN:
     case HEWN_OP_COS:

@@ -38,7 +38,8 @@ typedef enum hewn_evaluation {
 typedef struct hewn_code_desc {
     hewn_numbers numbers; /* of straight code */
     hewn_evaluation evaluation;
-    bool whole; /* no list is pruned: for comparison */
+    bool whole;   /* no list is pruned: for comparison */
+    bool chained; /* outlines are walked over side by side, without tables: for comparison */
 } hewn_code_desc;
 
 hewn_result hewn_code_create_as(hewn_device *device, const hewn_field *field, hewn_node root,

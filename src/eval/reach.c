@@ -113,10 +113,11 @@ static void reach_of_shape(const hewn_listing *listing, hewn_code_step *step, co
 static void reach_of_others(const hewn_listing *listing, hewn_code_step *step, const operands *in)
 {
     double sum = 0;
-    for (uint32_t i = 1; i < step->in_count; i++)
+    uint32_t first = step->table ? 0 : 1, numbers = step->table ? 1 : step->parameter_count;
+    for (uint32_t i = first; i < step->in_count; i++)
         sum += listing->steps[step->in[i]].size;
-    for (uint32_t i = 0; i < step->parameter_count; i++)
-        sum += fabs((double)listing->parameters[step->parameter + i]);
+    for (uint32_t i = 0; i < numbers; i++) /* of a table the outline's size, which follows its address */
+        sum += fabs((double)listing->parameters[step->parameter + (step->table ? HEWN_ADDRESS_NUMBERS : 0) + i]);
     switch (step->op) {
     case HEWN_OP_EDGE: set(step, HEWN_OUTLINE_START, false, in->sure && sum < 0.1 * most_squared); break;
     case HEWN_OP_OUTLINE: set(step, sqrt(HEWN_OUTLINE_START), false, in->sure && sum < 0.1 * most_squared); break;

@@ -11,7 +11,8 @@
 enum { MOST_STEPS_A_NODE = 24 };
 
 typedef struct builder {
-    hewn_lane_tape *tape; /* places only, no registers yet; outlines have their own arrays */
+    hewn_lane_tape *tape;   /* no registers yet; outlines have their own arrays */
+    hewn_lane_operands *in; /* of each step */
     uint32_t other_count;
     size_t outline_room;
 } builder;
@@ -27,7 +28,10 @@ static uint32_t put(builder *b, hewn_lane_kind kind, uint32_t a, uint32_t c, flo
 {
     uint32_t at = b->tape->count++;
     hewn_lane_step *step = &b->tape->steps[at];
-    *step = (hewn_lane_step){.kind = (uint8_t)kind, .number = number, .in = {a, c, HEWN_NO_STEP}};
+    *step = (hewn_lane_step){.kind = (uint8_t)kind, .number = number};
+    b->in[at][0] = a;
+    b->in[at][1] = c;
+    b->in[at][2] = HEWN_NO_STEP;
     step->input_count = (uint8_t)((a != HEWN_NO_STEP) + (c != HEWN_NO_STEP));
     return at;
 }
@@ -144,7 +148,7 @@ static uint32_t other(builder *b, const hewn_node_data *node, const uint32_t *in
     hewn_lane_step *step = &b->tape->steps[at];
     step->input_count = hewn_op_infos[node->op].operands;
     for (uint32_t i = 0; i < step->input_count; i++)
-        step->in[i] = in[i];
+        b->in[at][i] = in[i];
     step->number = (float)node->parameter[0];
     step->node = b->other_count;
     if (node->samples)
@@ -244,6 +248,7 @@ static void free_builder(builder *b)
     if (b->tape)
         hewn_free(b->tape->outlines);
     hewn_free(b->tape);
+    hewn_free(b->in);
 }
 
 static void free_others(hewn_node_data *others, uint32_t count)
@@ -261,15 +266,18 @@ hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_
     uint32_t *ids = NULL;
     size_t count = 0;
     HEWN_TRY(hewn_field_live_nodes(field, root, &ids, &count, error));
-    builder b = {.tape = hewn_alloc(1, sizeof *b.tape + count * MOST_STEPS_A_NODE * sizeof *b.tape->steps)};
+    builder b = {.tape = hewn_alloc(1, sizeof *b.tape + count * MOST_STEPS_A_NODE * sizeof *b.tape->steps),
+                 .in = hewn_alloc(count * MOST_STEPS_A_NODE, sizeof *b.in)};
     hewn_node_data *others = hewn_alloc(count, sizeof *others);
     uint32_t *places = hewn_alloc((size_t)root.id + 1, sizeof *places);
     hewn_result result = HEWN_OK;
-    if (b.tape && others && places) {
+    if (b.tape)
+        *b.tape = (hewn_lane_tape){0};
+    if (b.tape && b.in && others && places) {
         *b.tape = (hewn_lane_tape){.others = others};
         result = fill(&b, field, ids, count, places, error);
         if (result == HEWN_OK)
-            result = hewn_lane_tape_settle(b.tape, places[root.id], out, error);
+            result = hewn_lane_tape_settle(b.tape, b.in, places[root.id], out, error);
     } else {
         result = hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
     }
@@ -304,7 +312,7 @@ hewn_result hewn_lane_work_create(const hewn_lane_tape *whole, hewn_lane_work *o
     *out =
         (hewn_lane_work){.values = hewn_alloc((size_t)(whole->registers + 1) * ROWS * HEWN_LANES, sizeof *out->values),
                          .choices = hewn_alloc((size_t)(whole->cuts + 1) * HEWN_LANES, sizeof *out->choices),
-                         .scratch = hewn_alloc((size_t)whole->count * 3, sizeof *out->scratch),
+                         .scratch = hewn_alloc((size_t)whole->count * 7, sizeof *out->scratch),
                          .held = hewn_alloc((size_t)whole->registers + 1, sizeof *out->held),
                          .places = hewn_alloc((size_t)whole->outline_count * 4 * HEWN_LANES, sizeof *out->places),
                          .distances = hewn_alloc(whole->side_count, sizeof *out->distances),

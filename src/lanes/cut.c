@@ -10,6 +10,7 @@ enum { NO_REGISTER = 0xFFFF };
 typedef struct cutting {
     const hewn_lane_tape *from;
     const int32_t *choices;      /* the box's column, or NULL */
+    hewn_lane_operands *in;      /* of each step; then those of the new tape's */
     hewn_lane_outline *outlines; /* what those that are needed become; they move together, as steps do */
     uint32_t *same;              /* the step that has a step's value */
     uint32_t *place;             /* in the new tape, HEWN_NO_STEP: not needed */
@@ -30,9 +31,9 @@ static uint32_t mark(cutting *cut, uint32_t last)
             continue;
         int32_t keep = cut->choices[(size_t)choice++ * HEWN_LANES];
         if (keep == HEWN_KEEP_FIRST)
-            cut->same[i] = cut->same[steps[i].in[0]];
+            cut->same[i] = cut->same[cut->in[i][0]];
         else if (keep == HEWN_KEEP_SECOND && steps[i].input_count > 1)
-            cut->same[i] = cut->same[steps[i].in[1]];
+            cut->same[i] = cut->same[cut->in[i][1]];
         else if (keep == HEWN_KEEP_SECOND)
             cut->held[i] = HEWN_NO_STEP; /* its number alone */
     }
@@ -43,7 +44,7 @@ static uint32_t mark(cutting *cut, uint32_t last)
             continue;
         needed++;
         for (uint32_t k = 0; k < steps[i].input_count && cut->held[i] != HEWN_NO_STEP; k++)
-            cut->place[cut->same[steps[i].in[k]]] = 0;
+            cut->place[cut->same[cut->in[i][k]]] = 0;
     }
     return needed;
 }
@@ -54,8 +55,8 @@ static uint32_t copy_steps(cutting *cut, uint32_t last, hewn_lane_tape *to)
     for (uint32_t i = 0; i <= last; i++) {
         if (cut->place[i] == HEWN_NO_STEP)
             continue;
-        cut->place[i] = to->count;
-        hewn_lane_step *step = &to->steps[to->count++];
+        uint32_t at = cut->place[i] = to->count++; /* not after i, so what is written over has been read */
+        hewn_lane_step *step = &to->steps[at];
         *step = cut->from->steps[i];
         if (step->kind == HEWN_LANE_OUTLINE) {
             hewn_lane_outline *place = &cut->outlines[to->outline_count], other = *place;
@@ -69,7 +70,7 @@ static uint32_t copy_steps(cutting *cut, uint32_t last, hewn_lane_tape *to)
             step->input_count = 0;
         }
         for (uint32_t k = 0; k < step->input_count; k++)
-            step->in[k] = cut->place[cut->same[step->in[k]]];
+            cut->in[at][k] = cut->place[cut->same[cut->in[i][k]]];
         cuts += hewn_lane_can_cut(step);
     }
     return cuts;
@@ -91,9 +92,10 @@ static bool give_registers(cutting *cut, hewn_lane_tape *to)
         hewn_lane_step *step = &to->steps[i];
         step->out = (uint16_t)held[i];
         for (uint32_t k = 0; k < step->input_count; k++) {
-            if (held[step->in[k]] == NO_REGISTER)
-                held[step->in[k]] = take(cut);
-            step->from[k] = (uint16_t)held[step->in[k]];
+            uint32_t in = cut->in[i][k];
+            if (held[in] == NO_REGISTER)
+                held[in] = take(cut);
+            step->from[k] = (uint16_t)held[in];
         }
         if (cut->registers >= NO_REGISTER)
             return false;
@@ -121,14 +123,15 @@ static hewn_result make(cutting *cut, uint32_t last, uint32_t needed, hewn_lane_
     return result;
 }
 
-hewn_result hewn_lane_tape_settle(const hewn_lane_tape *steps, uint32_t last, hewn_lane_tape **out, hewn_error *error)
+hewn_result hewn_lane_tape_settle(const hewn_lane_tape *steps, hewn_lane_operands *in, uint32_t last,
+                                  hewn_lane_tape **out, hewn_error *error)
 {
     *out = NULL;
     uint32_t *room = hewn_alloc((size_t)steps->count * 3, sizeof *room);
     uint16_t *free = hewn_alloc((size_t)steps->count + 1, sizeof *free);
     hewn_result result = HEWN_OUT_OF_MEMORY;
     if (room && free) {
-        cutting cut = {.from = steps, .same = room, .free = free, .outlines = steps->outlines};
+        cutting cut = {.from = steps, .in = in, .same = room, .free = free, .outlines = steps->outlines};
         cut.place = room + steps->count;
         cut.held = room + 2 * (size_t)steps->count;
         uint32_t needed = mark(&cut, last);
@@ -165,6 +168,17 @@ static uint32_t pick(const cutting *cut, hewn_lane_work *work, uint32_t lane)
     return sides;
 }
 
+/* Who wrote a register last before a step reads it: that is the step's operand. */
+static void find_operands(const hewn_lane_tape *tape, uint32_t *writer, hewn_lane_operands *in)
+{
+    for (uint32_t i = 0; i < tape->count; i++) {
+        const hewn_lane_step *step = &tape->steps[i];
+        for (uint32_t k = 0; k < step->input_count; k++)
+            in[i][k] = writer[step->from[k]];
+        writer[step->out] = i;
+    }
+}
+
 hewn_result hewn_lane_tape_cut(const hewn_lane_tape *tape, hewn_lane_work *work, uint32_t lane, hewn_lane_tape **out,
                                hewn_error *error)
 {
@@ -172,6 +186,8 @@ hewn_result hewn_lane_tape_cut(const hewn_lane_tape *tape, hewn_lane_work *work,
     cutting cut = {.from = tape, .choices = work->choices + lane, .same = work->scratch, .free = work->held};
     cut.place = work->scratch + tape->count;
     cut.held = work->scratch + 2 * (size_t)tape->count;
+    cut.in = (hewn_lane_operands *)(work->scratch + 4 * (size_t)tape->count);
+    find_operands(tape, work->scratch + 3 * (size_t)tape->count, cut.in);
     uint32_t needed = mark(&cut, tape->count - 1);
     uint32_t sides = pick(&cut, work, lane);
     if (needed > tape->count - tape->count / 8 && sides >= tape->side_count - tape->side_count / 8)

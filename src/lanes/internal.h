@@ -14,7 +14,11 @@ static inline bool hewn_lane_can_cut(const hewn_lane_step *step)
     return step->kind >= HEWN_LANE_FLOOR_AT && step->kind <= HEWN_LANE_OTHER_BLEND;
 }
 
-/* From steps that know places only to a tape of those that `last` depends on, with registers. */
-hewn_result hewn_lane_tape_settle(const hewn_lane_tape *steps, uint32_t last, hewn_lane_tape **out, hewn_error *error);
+/* The steps that one reads, by their places. */
+typedef uint32_t hewn_lane_operands[HEWN_LANE_INPUTS];
+
+/* From steps without registers, which read others by `in` (written over), to a tape of those that `last` depends on. */
+hewn_result hewn_lane_tape_settle(const hewn_lane_tape *steps, hewn_lane_operands *in, uint32_t last,
+                                  hewn_lane_tape **out, hewn_error *error);
 
 #endif

@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/clones.h"
 #include "base/error.h"
+#include "field/outline.h"
 #include "lanes/loops.h"
 
 /* --- making ---------------------------------------------------------------------------------------------------------
@@ -20,31 +21,26 @@ static hewn_lane_side side_of(const double p[4])
     return side;
 }
 
-/* The link before one, where it is of the same coordinates. */
-static const hewn_node_data *link_before(const hewn_field *field, const hewn_node_data *link)
-{
-    const hewn_node_data *before = hewn_field_node(field, link->operand[0]);
-    bool same = before->operand[1] == link->operand[1] && before->operand[2] == link->operand[2];
-    return before->op == HEWN_OP_EDGE && same ? before : NULL;
-}
-
 hewn_result hewn_lane_outline_read(const hewn_field *field, const hewn_node_data *node, hewn_lane_outline *out,
                                    hewn_error *error)
 {
     *out = (hewn_lane_outline){.size = node->parameter[0]};
-    const hewn_node_data *first = node;
-    for (const hewn_node_data *link = node; (link = link_before(field, link)) != NULL; first = link)
-        out->side_count++;
-    const hewn_node_data *start = hewn_field_node(field, first->operand[0]);
-    if (out->side_count == 0 || start->op != HEWN_OP_CONSTANT || start->parameter[0] != HEWN_OUTLINE_START)
+    uint32_t count = hewn_outline_count(field, node);
+    if (count == 0)
         return HEWN_OK;
-    out->sides = hewn_alloc(out->side_count, sizeof *out->sides);
-    if (!out->sides)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an outline");
-    uint32_t at = out->side_count;
-    for (const hewn_node_data *link = node; (link = link_before(field, link)) != NULL;)
-        out->sides[--at] = side_of(link->parameter);
-    return HEWN_OK;
+    double(*sides)[4] = hewn_alloc(count, sizeof *sides);
+    out->sides = hewn_alloc(count, sizeof *out->sides);
+    if (sides && out->sides) {
+        hewn_outline_sides(field, node, sides);
+        for (uint32_t i = 0; i < count; i++)
+            out->sides[i] = side_of(sides[i]);
+        out->side_count = count;
+    }
+    hewn_free(sides);
+    if (out->side_count > 0)
+        return HEWN_OK;
+    hewn_lane_outline_free(out);
+    return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for an outline");
 }
 
 void hewn_lane_outline_free(hewn_lane_outline *outline)

@@ -43,15 +43,17 @@ typedef enum hewn_lane_kind {
     HEWN_LANE_OUTLINE /* the distance from an outline at (a, b), see hewn_lane_step.node */
 } hewn_lane_kind;
 
+/* Small, since a picture needs many thousands of tapes. */
 typedef struct hewn_lane_step {
     uint8_t kind;
     uint8_t input_count;
     uint16_t out;                    /* register */
     uint16_t from[HEWN_LANE_INPUTS]; /* registers */
-    uint32_t in[HEWN_LANE_INPUTS];   /* steps, by their place in the tape */
     float number;
-    float inverse; /* of a blend's size */
-    uint32_t node; /* of an operation of the field: which of `others`; of an outline: which of `outlines` */
+    union {
+        float inverse; /* of the quadratic blend's size */
+        uint32_t node; /* of an operation of the field: which of `others`; of an outline: which of `outlines` */
+    };
 } hewn_lane_step;
 
 /* A side of an outline, and what is wanted of it again and again. */
@@ -97,7 +99,7 @@ static inline uint32_t hewn_lane_tape_length(const hewn_lane_tape *tape)
 typedef struct hewn_lane_work {
     float *values;             /* a row of HEWN_LANES a register and derivative or bound */
     int32_t *choices;          /* of the last bounds: a row for each step that can be cut */
-    uint32_t *scratch;         /* three for each step */
+    uint32_t *scratch;         /* seven for each step */
     uint16_t *held;            /* one for each register */
     float *places;             /* of the last bounds: four rows for each outline, the lower and upper ends of x and y */
     double *distances;         /* one for each side of an outline */

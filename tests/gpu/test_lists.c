@@ -319,7 +319,7 @@ static void axes_that_share_parts_are_straight_code(void **state)
         hewn_node own = hewn_mul(f, hewn_exp(f, at[1]), hewn_constant(f, 0.01));
         made.root = hewn_max(f, cube, hewn_sub(f, hewn_add(f, bars, which == 0 ? own : waves), hewn_constant(f, 0.07)));
         GPU_TEST_TRY(hewn_field_status(f, &error));
-        GPU_TEST_TRY(hewn_listing_create(&listing, f, made.root, &error));
+        GPU_TEST_TRY(hewn_listing_create(&listing, f, made.root, false, &error));
         assert_true(listing.parted);
         hewn_listing_destroy(&listing);
         check_against_straight(device, &made, 40, HEWN_METHOD_DC, which == 0 ? "bars" : "waves");
