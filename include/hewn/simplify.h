@@ -83,7 +83,7 @@ typedef struct hewn_simplified {
 /* Simplifies polygons, which may be open or closed. What is not manifold stays as it is: vertices on edges of three or
  * more faces, of two that disagree in direction, or with several fans. A manifold input gives a manifold result of the
  * same topology: components, boundary loops and handles stay. No triangle turns by more than 80 degrees in one
- * collapse. The same bytes for any number of threads. About 100 bytes a triangle of memory beside input and result.
+ * collapse. The same bytes for any number of threads. Some 170 bytes a triangle of memory beside input and result.
  *
  * HEWN_INVALID_ARGUMENT for a bad `desc`; HEWN_BAD_INPUT for a position or index that cannot be used, naming it;
  * HEWN_LIMIT for 2^32 - 2 corners and more; HEWN_OUT_OF_MEMORY; HEWN_CANCELLED. `report` may be NULL. Safe from any

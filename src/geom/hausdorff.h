@@ -26,6 +26,9 @@ typedef struct hewn_reach_desc {
     uint8_t *far;
 } hewn_reach_desc;
 
+hewn_result hewn_surface_reach(const hewn_triangle_view *from, const hewn_triangle_view *to, const hewn_bvh *bvh,
+                               const hewn_reach_desc *desc, hewn_reach *out, hewn_error *error);
+
 /* Looks only at some points: corners, and `inner` rows of points within each triangle. Marks in `far`, one a triangle
  * of `from`, those with a point that is further away than the share `near` of `limit`; `*count` is how many have one
  * beyond the limit itself. Those are too far for certain; others may be too far still. The same for any number of
@@ -33,8 +36,5 @@ typedef struct hewn_reach_desc {
 hewn_result hewn_surface_glance(const hewn_triangle_view *from, const hewn_triangle_view *to, const hewn_bvh *bvh,
                                 uint32_t inner, double limit, double near, uint8_t *far, uint64_t *count,
                                 hewn_error *error);
-
-hewn_result hewn_surface_reach(const hewn_triangle_view *from, const hewn_triangle_view *to, const hewn_bvh *bvh,
-                               const hewn_reach_desc *desc, hewn_reach *out, hewn_error *error);
 
 #endif

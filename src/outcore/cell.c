@@ -181,7 +181,7 @@ static hewn_simplify_desc describe(const cell_work *work)
     const uint64_t fixed = cell->strictly ? 0 : count_fixed(work);
     const uint64_t left = fixed + (uint64_t)(cell->share * (double)(work->own - fixed));
     hewn_simplify_desc desc = *cell->desc;
-    desc.faces = cell->share > 0 ? work->triangles - work->own + (left > 0 ? left : 1) : 0;
+    desc.faces = work->triangles - work->own + (left > 0 ? left : 1);
     desc.ratio = desc.relative_error = 0;
     desc.error = cell->error;
     desc.measure = desc.measure || cell->error > 0; /* tells how little was used of it, which is left for others then */

@@ -28,7 +28,6 @@ typedef struct hewn_cell {
 typedef struct hewn_cell_report {
     uint64_t vertices;  /* of the region, that triangles name */
     uint64_t triangles; /* own ones that are left */
-    uint64_t dropped_faces;
     double distance, distance_low; /* where it was measured */
 } hewn_cell_report;
 

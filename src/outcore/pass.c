@@ -206,7 +206,7 @@ static bool report_part(void *user, const char *stage, double fraction)
 typedef struct pass_budget {
     uint64_t all, left; /* own triangles, and of regions that are not done */
     uint64_t aim;       /* what these shall become */
-    double share;       /* 0: as little as the error allows */
+    double share;
 } pass_budget;
 
 static pass_budget plan(const pass_work *work)
@@ -223,7 +223,7 @@ static void choose_share(const hewn_pass *pass, pass_budget *budget)
 {
     const double least = pass->strictly ? 0.25 : 0.1;
     const double share = budget->left > 0 ? (double)budget->aim / (double)budget->left : 1;
-    budget->share = pass->aim == 0 ? 0 : share < least ? least : share > 1 ? 1 : share;
+    budget->share = share < least ? least : share > 1 ? 1 : share;
 }
 
 static hewn_result simplify_region(pass_work *work, uint32_t region, pass_budget *budget, hewn_pass_report *report,

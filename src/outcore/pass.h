@@ -12,7 +12,7 @@ typedef struct hewn_pass {
     double shift;       /* of the regions' planes, see hewn_regions_make() */
     uint64_t capacity;  /* triangles that a region may have, with those around it */
     size_t list_memory; /* bytes for lists while they are added to */
-    uint64_t aim;       /* triangles to be left; 0: as few as the error allows */
+    uint64_t aim;       /* triangles to be left */
     bool strictly;      /* see hewn_cell */
     double error;       /* a length; 0: none is given */
     double began, span; /* its share of the whole work, for progress */

@@ -49,8 +49,8 @@ static void join_corners(const simplify_work *work, uint32_t *parent)
         }
 }
 
-/* Numbers fans by their first corners. Corners of faces that `work` left out stay as they are: it leaves them out
- * again. */
+/* Numbers fans by their first corners. Corners of faces that `work` left out are zeroes, three of one vertex, which it
+ * leaves out again. */
 static hewn_result number_fans(const simplify_work *work, const hewn_polygons *triangles, uint32_t *parent, fans *cut,
                                hewn_error *error)
 {
@@ -136,7 +136,7 @@ hewn_result hewn_complex_simplify(const hewn_polygons *triangles, const hewn_sim
     if (done == HEWN_OK) {
         const hewn_polygons fans_only = {.vertex_count = cut.count,
                                          .positions = cut.positions,
-                                         .face_count = triangles->face_count,
+                                         .face_count = cut.count > 0 ? triangles->face_count : 0,
                                          .corners = cut.corners};
         hewn_simplify_desc own = desc ? *desc : (hewn_simplify_desc){0};
         own.labels = NULL;

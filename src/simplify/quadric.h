@@ -52,16 +52,6 @@ static inline void simplify_quadric_add(simplify_quadric *q, const simplify_quad
     q->weight += other->weight;
 }
 
-static inline void simplify_quadric_scale(simplify_quadric *q, double factor)
-{
-    for (int i = 0; i < 6; i++)
-        q->a[i] *= factor;
-    for (int i = 0; i < 3; i++)
-        q->b[i] *= factor;
-    q->c *= factor;
-    q->weight *= factor;
-}
-
 /* Half the gradient. */
 static inline void simplify_quadric_slope(const simplify_quadric *q, const double x[3], double out[3])
 {

@@ -97,6 +97,17 @@ static double reach_of(const simplify_work *work, float cost)
     return work->samples->aim * sqrt(sqrt((double)cost / work->samples->price));
 }
 
+/* Prices an edge by what becomes of samples; whether others are cheaper now. */
+static bool grows_dear(edge_front *front, uint32_t name)
+{
+    simplify_work *work = front->work;
+    const float cost = price_of(work, name, &front->probe), before = work->key[name];
+    work->flags[name] |= front->probe.cut ? 0 : SIMPLIFY_PROBED;
+    work->key[name] = fmaxf(before, cost);
+    return cost > before &&
+           (cost > front->limit || (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0]));
+}
+
 /* Looks what becomes of samples. `*dear`: others are cheaper, the edge's key has grown. Else samples go where they will
  * be. Edges of a complex take theirs along, whatever becomes of them. */
 static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool *dear)
@@ -118,12 +129,13 @@ static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool
         side.kept = sides[i].kept;
         HEWN_TRY(hewn_simplify_probe_collapse(work, &side, &front->probe));
         if (!priced) {
-            const float cost = price_of(work, name, &front->probe);
-            work->flags[name] |= front->probe.cut ? 0 : SIMPLIFY_PROBED;
-            *dear =
-                cost > work->key[name] &&
-                (cost > front->limit || (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0]));
-            work->key[name] = fmaxf(work->key[name], cost);
+            *dear = grows_dear(front, name);
+            if (!*dear &&
+                front->probe.cut) { /* where costs are nearly 0 a price tells nothing: all samples are placed */
+                front->probe.plenty = INFINITY;
+                HEWN_TRY(hewn_simplify_probe_collapse(work, &side, &front->probe));
+                *dear = grows_dear(front, name);
+            }
             if (*dear)
                 return HEWN_OK;
         }

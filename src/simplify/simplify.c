@@ -122,6 +122,15 @@ static hewn_result hand_out(simplify_work *work, const simplify_input *in, simpl
     return HEWN_OK;
 }
 
+/* Whether a vertex is the first fan of what it is in the complex. */
+static bool is_first_fan(const simplify_work *work, uint32_t v)
+{
+    bool first = true;
+    for (uint32_t at = work->tie ? work->tie[v] : v; at != v && first; at = work->tie[at])
+        first = at > v;
+    return first;
+}
+
 static void describe(const simplify_work *work, uint64_t target, hewn_simplify_report *report)
 {
     report->triangles = work->face_count;
@@ -129,8 +138,10 @@ static void describe(const simplify_work *work, uint64_t target, hewn_simplify_r
     report->reached = target == 0 || report->triangles <= target;
     report->locked_vertices = report->unwalked_vertices = 0;
     for (uint32_t v = 0; v < work->vertex_count; v++) {
-        report->unwalked_vertices += work->rank[v] == SIMPLIFY_APART;
-        report->locked_vertices += work->rank[v] == SIMPLIFY_LOCKED;
+        if (work->rank[v] == SIMPLIFY_APART)
+            report->unwalked_vertices += is_first_fan(work, v);
+        else if (work->rank[v] == SIMPLIFY_LOCKED)
+            report->locked_vertices += is_first_fan(work, v);
     }
 }
 

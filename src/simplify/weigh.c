@@ -56,7 +56,8 @@ static void weigh_vertex(simplify_work *work, uint32_t v)
         work->facing[3 * (size_t)v + axis] = (float)facing[axis];
 }
 
-void hewn_simplify_key(simplify_work *work)
+/* Keys of all edges, as quadrics are now. */
+static void find_keys(simplify_work *work)
 {
 #pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t h = 0; h < 3 * work->face_count; h++)
@@ -72,6 +73,6 @@ hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error)
 #pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
     for (uint32_t v = 0; v < work->vertex_count; v++)
         weigh_vertex(work, v);
-    hewn_simplify_key(work);
+    find_keys(work);
     return HEWN_OK;
 }

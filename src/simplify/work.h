@@ -133,9 +133,6 @@ hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error);
 /* Quadrics of all vertices and wedges, then keys of all edges. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error);
 
-/* Keys of all edges, as quadrics are now. */
-void hewn_simplify_key(simplify_work *work);
-
 /* Puts vertices and triangles that are left into an order in which neighbours are near each other, along Hilbert's
  * curve through cubes that lie elsewhere for each `round`; removed ones are dropped. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_order(simplify_work *work, uint32_t round, hewn_error *error);

@@ -542,6 +542,37 @@ static hewn_volume make_quartered_ball(uint32_t n)
     return volume;
 }
 
+static int by_number(const void *a, const void *b)
+{
+    const uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
+    return (left > right) - (left < right);
+}
+
+/* Vertices at the ends of edges that have not two triangles. */
+static uint64_t count_curve_vertices(const hewn_label_mesh *mesh)
+{
+    const uint64_t count = 3 * mesh->triangle_count;
+    uint64_t *edges = malloc(count * sizeof *edges), sum = 0;
+    uint8_t *on_curve = calloc(mesh->vertex_count, 1);
+    assert_true(edges && on_curve);
+    for (uint64_t c = 0; c < count; c++) {
+        const uint64_t a = mesh->indices[c], b = mesh->indices[c % 3 == 2 ? c - 2 : c + 1];
+        edges[c] = a < b ? a << 32 | b : b << 32 | a;
+    }
+    qsort(edges, count, sizeof *edges, by_number);
+    for (uint64_t i = 0, end; i < count; i = end) {
+        for (end = i + 1; end < count && edges[end] == edges[i];)
+            end++;
+        if (end - i != 2)
+            on_curve[edges[i] >> 32] = on_curve[(uint32_t)edges[i]] = 1;
+    }
+    for (uint64_t v = 0; v < mesh->vertex_count; v++)
+        sum += on_curve[v];
+    free(edges);
+    free(on_curve);
+    return sum;
+}
+
 /* Curves between labels become coarser, stay where they were, and do not if they are locked. The error is kept. */
 static void test_simplified_curves(void **state)
 {
@@ -558,6 +589,8 @@ static void test_simplified_curves(void **state)
             fail_msg("%s", error.message);
         check_simplified(&mesh, &small, false);
         assert_int_equal(report.reached, kind != 1);
+        if (kind == 1) /* each once, however many labels meet there */
+            assert_int_equal(report.locked_vertices, count_curve_vertices(&small));
         assert_true(kind != 2 || (report.distance <= 0.5 && small.triangle_count < mesh.triangle_count / 10));
         for (uint32_t n = 1; n <= 4 && kind != 1; n++) { /* locked curves leave too few triangles for the rest */
             const double change = fabs(volume_of(&small, n) / volume_of(&mesh, n) - 1);
