@@ -1,6 +1,7 @@
 #include "simplify/balance.h"
 
 #include "base/error.h"
+#include "base/progress.h"
 #include "simplify/fit.h"
 #include "simplify/samples.h"
 #include "simplify/turned.h"
@@ -15,10 +16,27 @@ static uint32_t begin_at(uint32_t most, uint32_t target)
     return more < most ? (uint32_t)more : most;
 }
 
+/* Where the stage is when each step begins, about as time goes. */
+static const double sampling = 0.5, looking = 0.55, fitting = 0.9, righting = 0.97;
+
+static hewn_result begin_step(const simplify_work *work, double done, hewn_error *error)
+{
+    return hewn_progress_report(work->desc->progress, "simplify", done, error);
+}
+
+static hewn_result run(simplify_work *work, uint32_t target, bool early, double begin, double end, hewn_error *error)
+{
+    work->progress_begin = begin;
+    work->progress_end = end;
+    return hewn_simplify_run(work, target, early, error);
+}
+
 static hewn_result finish(simplify_work *work, uint32_t target, hewn_error *error)
 {
-    HEWN_TRY(hewn_simplify_run(work, target, false, error));
+    HEWN_TRY(run(work, target, false, looking, fitting, error));
+    HEWN_TRY(begin_step(work, fitting, error));
     HEWN_TRY(hewn_simplify_fit(work, error));
+    HEWN_TRY(begin_step(work, righting, error));
     return hewn_simplify_right(work, error);
 }
 
@@ -28,8 +46,9 @@ hewn_result hewn_simplify_balanced(simplify_work *work, const hewn_polygons *inp
     const uint32_t most = work->live_faces;
     const bool counted = work->wedges && work->wedges->counted > 0; /* attributes have a say in where vertices are */
     if (target == 0 || target > most / 2 || counted)
-        return hewn_simplify_run(work, target, false, error);
-    HEWN_TRY(hewn_simplify_run(work, begin_at(most, target), true, error));
+        return run(work, target, false, 0, 1, error);
+    HEWN_TRY(run(work, begin_at(most, target), true, 0, sampling, error));
+    HEWN_TRY(begin_step(work, sampling, error));
     hewn_result result = hewn_simplify_samples_make(work, input, target, &samples, error);
     work->samples = &samples;
     if (result == HEWN_OK)

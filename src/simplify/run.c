@@ -404,8 +404,10 @@ hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, bool early, 
     if (work->samples && target < began && !set_aim(work, target))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     for (uint32_t round = 0; round < MOST_ROUNDS && work->live_faces > target; round++) {
+        const double done = (double)(began - work->live_faces) / (double)(began - target + 1);
         HEWN_TRY(hewn_progress_report(work->desc->progress, "simplify",
-                                      (double)(began - work->live_faces) / (double)(began - target + 1), error));
+                                      work->progress_begin + (work->progress_end - work->progress_begin) * done,
+                                      error));
         HEWN_TRY(hewn_simplify_order(work, round, error));
         if (work->vertex_count <= 2 * part_of(work) || (work->live_faces - target) < began / 50)
             break;

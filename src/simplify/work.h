@@ -44,9 +44,10 @@ enum {
 
 typedef struct simplify_work {
     const hewn_simplify_desc *desc;
-    const uint8_t *frozen;   /* besides those of `desc`; or NULL */
-    const float *limits;     /* of the input's vertices, lengths; NULL: none */
-    double origin[3], scale; /* input position = origin + scale × position */
+    const uint8_t *frozen;               /* besides those of `desc`; or NULL */
+    const float *limits;                 /* of the input's vertices, lengths; NULL: none */
+    double origin[3], scale;             /* input position = origin + scale × position */
+    double progress_begin, progress_end; /* of the stage, for the run under way */
 
     uint32_t vertex_count, live_vertices;
     double *positions; /* 3 a vertex */
