@@ -16,6 +16,7 @@ typedef enum hewn_preserve {
     HEWN_PRESERVE_COLOR = 1 << 2,  /* "color": colours and the steps between them */
     HEWN_PRESERVE_LABEL = 1 << 3,  /* "label": borders between labels, materials, groups and objects */
     HEWN_PRESERVE_NONE = 1 << 4,   /* "none" */
+    HEWN_PRESERVE_USUAL = HEWN_PRESERVE_UV | HEWN_PRESERVE_COLOR | HEWN_PRESERVE_LABEL /* where nothing is said */
 } hewn_preserve;
 
 /* When to stop, and what stays; at least one of `faces`, `ratio`, `error` and `relative_error` must be there. With

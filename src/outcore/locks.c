@@ -44,8 +44,7 @@ static bool is_bent(const hewn_model *triangles, const lock_side sides[2], doubl
     double normals[2][3];
     for (int i = 0; i < 2; i++)
         find_normal(triangles, sides[i].face, normals[i]);
-    const double lengths = simplify_dot(normals[0], normals[0]) * simplify_dot(normals[1], normals[1]);
-    return lengths > 0 && simplify_dot(normals[0], normals[1]) < cosine * sqrt(lengths);
+    return simplify_bends(normals[0], normals[1], cosine);
 }
 
 hewn_result hewn_locks_find(const hewn_model *triangles, const hewn_simplify_desc *desc, uint32_t preserve,

@@ -18,9 +18,6 @@ enum { PROGRAM_MORE = 8 << 20, PROGRAM_STEP = 24 << 20, LEAST = 8 << 20 };
 /* How many times its bytes a file may take while it is read whole: numbers as text can be short. */
 enum { TIMES_BINARY = 6, TIMES_OTHERS = 10 };
 
-/* What counts where nothing is said. */
-static const uint32_t usual = HEWN_PRESERVE_UV | HEWN_PRESERVE_COLOR | HEWN_PRESERVE_LABEL;
-
 typedef struct outcore_job {
     const hewn_file_job_desc *desc;
     hewn_file_report *report;
@@ -60,7 +57,8 @@ static void begin_store(outcore_job *job)
 {
     const hewn_simplify_desc *desc = job->desc->simplify;
     job->pages = job->budget.left / 8;
-    hewn_store_begin(job->desc->output, desc->preserve ? desc->preserve : usual, (size_t)job->pages, &job->store);
+    hewn_store_begin(job->desc->output, desc->preserve ? desc->preserve : HEWN_PRESERVE_USUAL, (size_t)job->pages,
+                     &job->store);
 }
 
 static hewn_result take(void *user, hewn_model *part, hewn_error *error)
@@ -100,7 +98,7 @@ static hewn_result read_parts(outcore_job *job, hewn_error *error)
 {
     const hewn_file_job_desc *desc = job->desc;
     const hewn_read_desc read = {.format = job->report->from, .progress = desc->progress};
-    const uint32_t preserve = desc->simplify->preserve ? desc->simplify->preserve : usual;
+    const uint32_t preserve = desc->simplify->preserve ? desc->simplify->preserve : HEWN_PRESERVE_USUAL;
     const hewn_part_taker taker = {.take = take,
                                    .user = job,
                                    .memory = job->budget.left / 2,

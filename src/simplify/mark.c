@@ -11,8 +11,7 @@ static bool is_bent(const simplify_work *work, uint32_t h, double cosine)
         simplify_area_vector(simplify_at(work, work->tail[g]), simplify_at(work, simplify_head(work, g)),
                              simplify_at(work, work->tail[simplify_prev(g)]), normals[side]);
     }
-    double lengths = simplify_dot(normals[0], normals[0]) * simplify_dot(normals[1], normals[1]);
-    return lengths > 0 && simplify_dot(normals[0], normals[1]) < cosine * sqrt(lengths);
+    return simplify_bends(normals[0], normals[1], cosine);
 }
 
 static bool is_label_border(const simplify_work *work, uint32_t h)

@@ -27,8 +27,7 @@ hewn_result hewn_model_simplify(hewn_model *model, const hewn_simplify_desc *des
                                 hewn_error *error)
 {
     hewn_simplify_desc own = desc ? *desc : (hewn_simplify_desc){0};
-    const uint32_t preserve =
-        own.preserve ? own.preserve : HEWN_PRESERVE_UV | HEWN_PRESERVE_COLOR | HEWN_PRESERVE_LABEL;
+    const uint32_t preserve = own.preserve ? own.preserve : HEWN_PRESERVE_USUAL;
     const hewn_polygons polygons = hewn_model_polygons(model);
     simplify_channels channels = {0};
     simplify_result result = {0};

@@ -2,6 +2,9 @@
 #ifndef HEWN_SRC_SIMPLIFY_VECTOR_H
 #define HEWN_SRC_SIMPLIFY_VECTOR_H
 
+#include <math.h>
+#include <stdbool.h>
+
 static inline double simplify_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -28,6 +31,13 @@ static inline void simplify_area_vector(const double a[3], const double b[3], co
     simplify_between(a, b, u);
     simplify_between(a, c, v);
     simplify_cross(u, v, out);
+}
+
+/* Whether faces of two area vectors bend by more than the angle of a cosine; those without area do not. */
+static inline bool simplify_bends(const double a[3], const double b[3], double cosine)
+{
+    const double lengths = simplify_dot(a, a) * simplify_dot(b, b);
+    return lengths > 0 && simplify_dot(a, b) < cosine * sqrt(lengths);
 }
 
 #endif
