@@ -297,7 +297,7 @@ struct hewn_dual_vertex_push {
 struct hewn_dual_asked_push {
     HEWN_GRID grid;
     HEWN_UINT count;
-    HEWN_UINT beyond;      /* as above */
+    HEWN_UINT beyond; /* as above */
     HEWN_UINTS bricks;
     HEWN_FLOATS questions; /* a place, and the slot of a brick near it as a word */
     HEWN_FLOATS answers;   /* out: the surface from there, as unit normal and how far off it is in cells */
