@@ -26,8 +26,8 @@ typedef struct hewn_cell {
 
 /* What came of it. */
 typedef struct hewn_cell_report {
-    uint64_t vertices;  /* of the region, that triangles name */
-    uint64_t triangles; /* own ones that are left */
+    uint64_t vertices;             /* of the region, that triangles name */
+    uint64_t triangles;            /* own ones that are left */
     double distance, distance_low; /* where it was measured */
 } hewn_cell_report;
 
