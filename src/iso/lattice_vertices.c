@@ -13,11 +13,22 @@ typedef struct edge_row {
 HEWN_LATTICE_INLINE hewn_lattice_line line_along(const hewn_lattice *lattice, uint64_t number, uint32_t at,
                                                  uint32_t count, uint64_t step, hewn_voxel type)
 {
-    const uint32_t reach = lattice->planes ? HEWN_LATTICE_REACH : 1, rest = count - 1 - at;
+    const uint32_t reach = HEWN_LATTICE_REACH, rest = count - 1 - at;
     hewn_lattice_line line = {.before = at < reach ? at : reach, .after = rest < reach ? rest : reach};
     for (uint32_t n = HEWN_LATTICE_REACH - line.before; n <= HEWN_LATTICE_REACH + line.after; n++)
         line.value[n] = hewn_lattice_value(lattice, number + step * n - step * HEWN_LATTICE_REACH, type);
     return line;
+}
+
+/* The slope that hewn_lattice_slope() finds, from no more samples than it takes: most meshes need nothing else. */
+HEWN_LATTICE_INLINE double slope_along(const hewn_lattice *lattice, uint64_t number, uint32_t at, uint32_t count,
+                                       uint64_t step, hewn_voxel type)
+{
+    if (count == 1)
+        return 0;
+    const uint64_t lo = at > 0 ? number - step : number, hi = at + 1 < count ? number + step : number;
+    const double rise = hewn_lattice_value(lattice, hi, type) - hewn_lattice_value(lattice, lo, type);
+    return hi - lo == 2 * step ? rise / 2 : rise;
 }
 
 HEWN_LATTICE_INLINE void gradient_at(const hewn_lattice *lattice, const uint32_t at[3], hewn_voxel type, double out[3])
@@ -26,6 +37,10 @@ HEWN_LATTICE_INLINE void gradient_at(const hewn_lattice *lattice, const uint32_t
     uint64_t step[3] = {1, dims[0], (uint64_t)dims[0] * dims[1]};
     uint64_t number = lattice->first + at[0] + at[1] * step[1] + at[2] * step[2];
     hewn_lattice_line lines[3];
+    for (int axis = 0; axis < 3 && !lattice->planes; axis++)
+        out[axis] = slope_along(lattice, number, at[axis], dims[axis], step[axis], type);
+    if (!lattice->planes)
+        return;
     for (int axis = 0; axis < 3; axis++)
         lines[axis] = line_along(lattice, number, at[axis], dims[axis], step[axis], type);
     hewn_lattice_gradient(lattice, lines, out);
