@@ -72,14 +72,29 @@ typedef struct block_edges {
     hewn_lattice_pen pen;
 } block_edges;
 
+static const ptrdiff_t steps[3] = {1, SIDE, SIDE *SIDE};
+
+/* What hewn_lattice_slope() finds along each axis, from no more samples than it takes. `here` is the sample in the
+ * block, `from` the same in the volume. */
+static void find_slopes(const uint32_t dims[3], const double *here, const uint32_t from[3], double out[3])
+{
+    for (int axis = 0; axis < 3; axis++) {
+        const ptrdiff_t down = from[axis] > 0 ? steps[axis] : 0, up = from[axis] + 1 < dims[axis] ? steps[axis] : 0;
+        const double rise = here[up] - here[-down];
+        out[axis] = down > 0 && up > 0 ? rise / 2 : rise;
+    }
+}
+
 /* `at` is the sample in the block, `from` the same in the volume. */
 static void gradient_at(const block_edges *edges, const uint32_t at[3], const uint32_t from[3], double out[3])
 {
-    const uint32_t *dims = edges->lattice->volume->dims;
+    const uint32_t *dims = edges->lattice->volume->dims, reach = HEWN_LATTICE_REACH;
     const double *here = &edges->field.values[at[2] + BEFORE][at[1] + BEFORE][at[0] + BEFORE];
-    static const ptrdiff_t steps[3] = {1, SIDE, SIDE * SIDE};
-    const uint32_t reach = edges->lattice->planes ? HEWN_LATTICE_REACH : 1;
     hewn_lattice_line lines[3];
+    if (!edges->lattice->planes) {
+        find_slopes(dims, here, from, out);
+        return;
+    }
     for (int axis = 0; axis < 3; axis++) {
         const uint32_t rest = dims[axis] - 1 - from[axis];
         hewn_lattice_line *line = &lines[axis];
