@@ -227,6 +227,17 @@ static uint32_t state_of(const hewn_lattice *lattice, uint32_t side, const uint3
     return whole ? IN : MIXED;
 }
 
+/* Whether a cube holds samples of the volume, or one after it along some axis does: where neither is so, all is out. */
+static bool is_near(const hewn_lattice *lattice, uint32_t side, const uint32_t at[3])
+{
+    bool near = true;
+    for (int axis = 0; axis < 3; axis++) {
+        const uint64_t lead = lattice->volume->blocks->lead[axis], begin = (uint64_t)at[axis] * side;
+        near = near && begin < lead + lattice->volume->dims[axis] && begin + 2 * (uint64_t)side > lead;
+    }
+    return near;
+}
+
 /* Whether cells that begin in a cube may hold surface, and in which of its parts: `*state` is its own. */
 static bool may_have_surface(const hewn_lattice *lattice, uint32_t side, const uint32_t at[3], uint32_t *state)
 {
@@ -277,7 +288,7 @@ static void search_cube(block_search *search, const uint32_t cube[3], block_list
         const uint32_t at[3] = {HEWN_LOWER * cube[0] + part % HEWN_LOWER,
                                 HEWN_LOWER * cube[1] + part / HEWN_LOWER % HEWN_LOWER,
                                 HEWN_LOWER * cube[2] + part / HEWN_LOWER / HEWN_LOWER};
-        if (may_have_surface(search->lattice, HEWN_BLOCK, at, &own))
+        if (is_near(search->lattice, HEWN_BLOCK, at) && may_have_surface(search->lattice, HEWN_BLOCK, at, &own))
             add_block(search, at, out);
     }
 #pragma omp atomic
@@ -298,7 +309,8 @@ static hewn_result list_cubes(block_search *search, uint64_t root, hewn_error *e
         const uint32_t at[3] = {HEWN_UPPER * whole[0] + part % HEWN_UPPER,
                                 HEWN_UPPER * whole[1] + part / HEWN_UPPER % HEWN_UPPER,
                                 HEWN_UPPER * whole[2] + part / HEWN_UPPER / HEWN_UPPER};
-        if (!may_have_surface(search->lattice, HEWN_LOWER_SPAN, at, &own))
+        if (!is_near(search->lattice, HEWN_LOWER_SPAN, at) ||
+            !may_have_surface(search->lattice, HEWN_LOWER_SPAN, at, &own))
             continue;
         HEWN_TRY(hewn_reserve((void **)&search->cubes, &search->cube_room, search->cube_count + 1,
                               sizeof *search->cubes, error));
