@@ -4,40 +4,7 @@
 
 #include <omp.h>
 
-#include "iso/extractor.h"
-#include "random_fields.h"
-
-typedef struct subject {
-    hewn_field *field;
-    hewn_extractor *extractor;
-} subject;
-
-static subject make_subject(maker *make, uint32_t seed, hewn_evaluation evaluation)
-{
-    subject made;
-    GPU_TEST_TRY(hewn_field_create(&made.field, &error));
-    hewn_node root = make(made.field, seed);
-    const hewn_code_desc desc = {.evaluation = evaluation};
-    GPU_TEST_TRY(hewn_extractor_create_as(device, made.field, root, &desc, &made.extractor, &error));
-    assert_true(made.extractor->on_host); /* these tests run on CPU devices */
-    return made;
-}
-
-static void free_subject(subject *made)
-{
-    hewn_extractor_destroy(&made->extractor);
-    hewn_field_destroy(&made->field);
-}
-
-static hewn_triangles extract(const subject *made, bool on_host, const hewn_extract_desc *desc,
-                              hewn_extract_stats *stats)
-{
-    hewn_triangles mesh;
-    made->extractor->on_host = on_host;
-    GPU_TEST_TRY(hewn_extract(made->extractor, desc, &mesh, stats, &error));
-    made->extractor->on_host = true;
-    return mesh;
-}
+#include "host_subject.h"
 
 /* Corners of quad i in their order, the least number first: two triangles (a, b, c), (a, c, d). */
 static void corners_of(const hewn_triangles *mesh, uint64_t i, uint32_t out[4])
@@ -69,7 +36,8 @@ static void compare(const subject *made, hewn_extract_desc desc, tally *sums)
 {
     hewn_extract_stats with_host, without;
     desc.quads = true;
-    hewn_triangles host = extract(made, true, &desc, &with_host), other = extract(made, false, &desc, &without);
+    hewn_triangles host = extract_with(made, true, &desc, &with_host),
+                   other = extract_with(made, false, &desc, &without);
     assert_int_equal(host.vertex_count, other.vertex_count);
     assert_int_equal(host.triangle_count, other.triangle_count);
     assert_true(host.triangle_count > 0);
@@ -131,7 +99,7 @@ static void test_same_as_device(void **state)
     maker *const makers[] = {make_waves, make_integers};
     for (uint32_t seed = 0; seed < 2; seed++) {
         tally sums = {0};
-        subject made = make_subject(makers[seed], seed, HEWN_EVALUATION_AUTO);
+        subject made = make_subject(device, makers[seed], seed, HEWN_EVALUATION_AUTO);
         for (size_t i = 0; i < sizeof grids / sizeof *grids; i++)
             for (int variant = 0; variant < 4; variant++)
                 compare(&made, grid_of(grids[i], variant & 1, variant & 2 ? HEWN_METHOD_DC : HEWN_METHOD_NETS), &sums);
@@ -147,7 +115,7 @@ static void test_features(void **state)
     tally sums = {0};
     for (uint32_t seed = 0; seed < 3; seed++) {
         hewn_evaluation evaluation = seed & 1 ? HEWN_EVALUATION_LISTED : HEWN_EVALUATION_STRAIGHT;
-        subject made = make_subject(make_tree, seed, evaluation);
+        subject made = make_subject(device, make_tree, seed, evaluation);
         for (int open = 0; open < 2; open++)
             compare(&made,
                     (hewn_extract_desc){.bounds = {{-0.9, -0.8, -1}, {1, 1, 0.7}},
@@ -176,7 +144,7 @@ static void test_any_number_of_threads(void **state)
 {
     (void)state;
     static const double cells[3] = {72, 66, 70};
-    subject made = make_subject(make_waves, 7, HEWN_EVALUATION_AUTO);
+    subject made = make_subject(device, make_waves, 7, HEWN_EVALUATION_AUTO);
     int before = omp_get_max_threads();
     for (hewn_method method = HEWN_METHOD_NETS; method <= HEWN_METHOD_DC; method++) {
         hewn_extract_stats stats[2];
@@ -184,7 +152,7 @@ static void test_any_number_of_threads(void **state)
         hewn_extract_desc desc = grid_of(cells, false, method);
         for (int i = 0; i < 2; i++) {
             omp_set_num_threads(i ? 5 : 1);
-            meshes[i] = extract(&made, true, &desc, &stats[i]);
+            meshes[i] = extract_with(&made, true, &desc, &stats[i]);
         }
         omp_set_num_threads(before);
         assert_same(&meshes[0], &meshes[1]);

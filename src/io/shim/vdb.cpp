@@ -70,6 +70,30 @@ std::string text_of(const openvdb::Coord &at)
     return "(" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " + std::to_string(at.z()) + ")";
 }
 
+/* OpenVDB takes some places from the file as they are, and then finds nothing there. A tree whose nodes all lie where
+ * their parents have them, at multiples of their sides, has no two at one place. */
+void check_place(const openvdb::GridBase &grid, const char *what, const openvdb::Coord &origin,
+                 const openvdb::Coord &expected)
+{
+    if (origin != expected)
+        throw std::runtime_error("grid '" + grid.getName() + "' has a " + what + " at " + text_of(origin) +
+                                 ", which belongs at " + text_of(expected));
+}
+
+template <typename Grid, typename Lower>
+void check_places(const Grid &grid, const std::vector<const Lower *> &lowers)
+{
+    const auto &root = grid.tree().root();
+    constexpr auto side = int32_t(Grid::TreeType::RootNodeType::ChildNodeType::DIM);
+    for (auto at = root.cbeginValueAll(); at; ++at)
+        check_place(grid, "tile", at.getCoord(), at.getCoord() & ~(side - 1));
+    for (auto at = root.cbeginChildOn(); at; ++at)
+        check_place(grid, "node", at.getCoord(), at->origin());
+    for (const Lower *node : lowers)
+        for (auto at = node->cbeginChildOn(); at; ++at)
+            check_place(grid, "leaf", at->origin(), at.getCoord());
+}
+
 template <typename Grid>
 class held_grid : public hewn_vdb
 {
@@ -90,27 +114,6 @@ class held_grid : public hewn_vdb
     std::vector<const Leaf *> leaves;
     std::vector<constant_cube> tiles;
 
-    /* OpenVDB takes some places from the file as they are, and then finds nothing there. A tree whose nodes all lie
-     * where their parents have them, at multiples of their sides, has no two at one place. */
-    void check_place(const char *what, const openvdb::Coord &origin, const openvdb::Coord &expected) const
-    {
-        if (origin != expected)
-            throw std::runtime_error("grid '" + grid->getName() + "' has a " + what + " at " + text_of(origin) +
-                                     ", which belongs at " + text_of(expected));
-    }
-
-    void check_places(const std::vector<const Lower *> &lowers) const
-    {
-        const Root &root = grid->tree().root();
-        for (auto at = root.cbeginValueAll(); at; ++at)
-            check_place("tile", at.getCoord(), at.getCoord() & ~int32_t(Upper::DIM - 1));
-        for (auto at = root.cbeginChildOn(); at; ++at)
-            check_place("node", at.getCoord(), at->origin());
-        for (const Lower *node : lowers)
-            for (auto at = node->cbeginChildOn(); at; ++at)
-                check_place("leaf", at->origin(), at.getCoord());
-    }
-
     template <typename Node>
     void list_tiles(const Node &node, uint32_t side)
     {
@@ -129,7 +132,7 @@ class held_grid : public hewn_vdb
         grid->tree().getNodes(leaves);
         grid->tree().getNodes(uppers);
         grid->tree().getNodes(lowers);
-        check_places(lowers);
+        check_places(*grid, lowers);
         list_tiles(grid->tree().root(), Upper::DIM);
         for (const Upper *node : uppers)
             list_tiles(*node, Lower::DIM);
