@@ -13,7 +13,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
-enum { OUTPUT_BUFFER = 1 << 20, READ_STEP = 1 << 16 };
+enum { OUTPUT_BUFFER = 1 << 20, READ_STEP = 1 << 16, DIRECT = 1 << 16 };
 
 static hewn_result system_failure(hewn_error *error, const char *path, const char *what, int code)
 {
@@ -252,9 +252,9 @@ hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t len
         return repeat_failure(output, error);
     if (length == 0)
         return HEWN_OK;
-    if (length > OUTPUT_BUFFER - output->used)
+    if (length >= DIRECT || length > OUTPUT_BUFFER - output->used)
         HEWN_TRY(flush(output, error));
-    if (length >= OUTPUT_BUFFER)
+    if (length >= DIRECT) /* not copied twice */
         return write_through(output, bytes, length, error);
     memcpy(output->buffer + output->used, bytes, length);
     output->used += length;
