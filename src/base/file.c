@@ -246,6 +246,14 @@ static hewn_result flush(hewn_output *output, hewn_error *error)
     return write_through(output, output->buffer, used, error);
 }
 
+void hewn_output_expect(const hewn_output *output, uint64_t length)
+{
+    /* The length grows with what is written, so what is cut short has no zeros behind it. What is refused here the
+     * writes tell about. */
+    if (output->temporary && length >= OUTPUT_BUFFER && length <= INT64_MAX)
+        (void)fallocate(output->file, FALLOC_FL_KEEP_SIZE, 0, (off_t)length);
+}
+
 hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t length, hewn_error *error)
 {
     if (output->status != HEWN_OK)

@@ -314,6 +314,8 @@ hewn_result hewn_glb_write_body(const hewn_writing *job, hewn_output *output, he
 
 static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_error *error)
 {
+    const writer *own = job->own;
+    hewn_output_expect(output, job->head_length + ((find_sizes(job, &own->plan).whole + 3) & ~(uint64_t)3));
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
     return hewn_glb_write_body(job, output, error);
 }

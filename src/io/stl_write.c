@@ -165,6 +165,7 @@ static hewn_result prepare(hewn_writing *job, hewn_error *error)
 
 static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_error *error)
 {
+    hewn_output_expect(output, job->head_length + FACET * job->triangle_count);
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
     hewn_stream facets = {.put_run = put_run, .count = job->triangle_count, .room = FACET, .span = 1};
     return hewn_stream_write(job, &facets, output, error);

@@ -140,8 +140,8 @@ static bool take(belt *on, uint64_t *block)
     return true;
 }
 
-/* Writes the blocks whose turn it is, where nobody does. Those who wait for a slot are woken when half of them are free:
- * waking takes time that the next write need not wait for. */
+/* Writes the blocks whose turn it is, where nobody does. Those who wait for a slot are woken when half of them are
+ * free: waking takes time that the next write need not wait for. */
 static void write_ready(belt *on)
 {
     if (on->writing)

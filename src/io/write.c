@@ -104,8 +104,8 @@ HEWN_CLONES static bool all_finite(const float *numbers, uint64_t count)
     return most < 0x7F800000u;
 }
 
-/* Numbers are looked at in large runs, and one by one only in a run where one of them is wrong. */
-enum { CHECK_RUN = 1 << 18 };
+/* Numbers are looked at in runs, some of them at once, and one by one only where one of them is wrong. */
+enum { CHECK_RUN = 1 << 16, RUNS_AT_ONCE = 16 };
 
 static hewn_result blame_number(const hewn_triangles *mesh, uint64_t begin, uint64_t end, bool index, hewn_error *error)
 {
@@ -120,17 +120,28 @@ static hewn_result blame_number(const hewn_triangles *mesh, uint64_t begin, uint
     return HEWN_OK;
 }
 
+static bool all_good(const hewn_triangles *mesh, bool index, uint64_t begin, uint64_t end)
+{
+    bool good = true;
+#pragma omp parallel for schedule(static) reduction(&& : good) if (end - begin > 4 * (uint64_t)CHECK_RUN)
+    for (uint64_t at = begin; at < end; at += CHECK_RUN) {
+        const uint64_t length = end - at < CHECK_RUN ? end - at : CHECK_RUN;
+        good = good && (index ? find_largest(mesh->indices + at, length) < mesh->vertex_count
+                              : all_finite(mesh->positions + at, length));
+    }
+    return good;
+}
+
 static hewn_result check_numbers(const hewn_triangles *mesh, bool index, const hewn_progress *progress,
                                  hewn_error *error)
 {
     const uint64_t count = 3 * (index ? mesh->triangle_count : mesh->vertex_count);
-    for (uint64_t begin = 0; begin < count; begin += CHECK_RUN) {
-        const uint64_t length = count - begin < CHECK_RUN ? count - begin : CHECK_RUN;
-        const bool good = index ? find_largest(mesh->indices + begin, length) < mesh->vertex_count
-                                : all_finite(mesh->positions + begin, length);
-        if (!good)
-            return blame_number(mesh, begin, begin + length, index, error);
-        HEWN_TRY(hewn_progress_report(progress, "write", 0, error));
+    for (uint64_t begin = 0, end; begin < count; begin = end) {
+        end = count - begin < RUNS_AT_ONCE * CHECK_RUN ? count : begin + RUNS_AT_ONCE * CHECK_RUN;
+        if (!all_good(mesh, index, begin, end))
+            return blame_number(mesh, begin, end, index, error);
+        for (uint64_t at = begin + CHECK_RUN; at <= end; at += CHECK_RUN) /* who maps the numbers lets pages go here */
+            HEWN_TRY(hewn_progress_report(progress, "write", 0, error));
     }
     return HEWN_OK;
 }
