@@ -13,7 +13,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 
-enum { OUTPUT_BUFFER = 1 << 20, READ_STEP = 1 << 16 };
+enum { OUTPUT_BUFFER = 1 << 20, READ_STEP = 1 << 16, DIRECT = 1 << 16 };
 
 static hewn_result system_failure(hewn_error *error, const char *path, const char *what, int code)
 {
@@ -251,15 +251,23 @@ static hewn_result flush(hewn_output *output, hewn_error *error)
     return write_through(output, output->buffer, used, error);
 }
 
+void hewn_output_expect(const hewn_output *output, uint64_t length)
+{
+    /* The length grows with what is written, so what is cut short has no zeros behind it. What is refused here the
+     * writes tell about. */
+    if (output->temporary && length >= OUTPUT_BUFFER && length <= INT64_MAX)
+        (void)fallocate(output->file, FALLOC_FL_KEEP_SIZE, 0, (off_t)length);
+}
+
 hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t length, hewn_error *error)
 {
     if (output->status != HEWN_OK)
         return repeat_failure(output, error);
     if (length == 0)
         return HEWN_OK;
-    if (length > OUTPUT_BUFFER - output->used)
+    if (length >= DIRECT || length > OUTPUT_BUFFER - output->used)
         HEWN_TRY(flush(output, error));
-    if (length >= OUTPUT_BUFFER)
+    if (length >= DIRECT) /* not copied twice */
         return write_through(output, bytes, length, error);
     memcpy(output->buffer + output->used, bytes, length);
     output->used += length;

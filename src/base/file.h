@@ -20,6 +20,10 @@ typedef struct hewn_output hewn_output;
  * missing or closed folder around it and a file that may not be written are HEWN_IO here, before any work. */
 hewn_result hewn_output_create(const char *path, hewn_output **out, hewn_error *error);
 
+/* Tells the system how many bytes there will be in all, exactly: where it can, it finds a place for them at once, which
+ * is quicker than to find one for each write, and leaves the file in fewer pieces. */
+void hewn_output_expect(const hewn_output *output, uint64_t length);
+
 /* Appends bytes. An error (a full disk) is returned at once and again by every later call. */
 hewn_result hewn_output_write(hewn_output *output, const void *bytes, size_t length, hewn_error *error);
 

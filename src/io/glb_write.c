@@ -297,14 +297,14 @@ hewn_result hewn_glb_write_body(const hewn_writing *job, hewn_output *output, he
     HEWN_TRY(hewn_stream_write(job, &stream, output, error));
     for (size_t i = 0; i < plan->layer_count; i++) {
         own->layer = &plan->layers[i];
-        stream = (hewn_stream){put_layer, vertices, own->layer->stream.item, NULL, share * (double)(i + 1), share};
+        stream = (hewn_stream){put_layer, vertices, own->layer->stream.item, NULL, share * (double)(i + 1), share, NULL};
         HEWN_TRY(hewn_stream_write(job, &stream, output, error));
     }
-    stream = (hewn_stream){put_index, corners, 4, NULL, 0.7, 0.3};
+    stream = (hewn_stream){put_index, corners, 4, NULL, 0.7, 0.3, NULL};
     HEWN_TRY(hewn_stream_write(job, &stream, output, error));
     if (plan->merge_count > 0) {
         HEWN_TRY(pad(output, size.indices_end, error));
-        stream = (hewn_stream){put_merge_place, corners, 4, NULL, 1, 0};
+        stream = (hewn_stream){put_merge_place, corners, 4, NULL, 1, 0, NULL};
         HEWN_TRY(hewn_stream_write(job, &stream, output, error));
         stream.put = put_merge_vertex;
         HEWN_TRY(hewn_stream_write(job, &stream, output, error));
@@ -314,6 +314,8 @@ hewn_result hewn_glb_write_body(const hewn_writing *job, hewn_output *output, he
 
 static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_error *error)
 {
+    const writer *own = job->own;
+    hewn_output_expect(output, job->head_length + ((find_sizes(job, &own->plan).whole + 3) & ~(uint64_t)3));
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
     return hewn_glb_write_body(job, output, error);
 }

@@ -331,10 +331,10 @@ static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_erro
 {
     const obj_own *own = job->own;
     const hewn_stream streams[] = {
-        {put_vertex, job->vertex_count, VERTEX_ROOM, NULL, 0, 0.3},
-        {put_uv, own->uvs.count, VERTEX_ROOM, NULL, 0.3, 0.1},
-        {put_normal, own->normals.count, VERTEX_ROOM, NULL, 0.4, 0.2},
-        {put_face, job->face_count, 0, face_room, 0.6, 0.4},
+        {put_vertex, job->vertex_count, VERTEX_ROOM, NULL, 0, 0.3, NULL},
+        {put_uv, own->uvs.count, VERTEX_ROOM, NULL, 0.3, 0.1, NULL},
+        {put_normal, own->normals.count, VERTEX_ROOM, NULL, 0.4, 0.2, NULL},
+        {put_face, job->face_count, 0, face_room, 0.6, 0.4, NULL},
     };
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
     for (size_t i = 0; i < sizeof streams / sizeof *streams; i++)

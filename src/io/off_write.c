@@ -115,9 +115,9 @@ static hewn_result prepare(hewn_writing *job, hewn_error *error)
 static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_error *error)
 {
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
-    hewn_stream vertices = {put_vertex, job->vertex_count, VERTEX_ROOM, NULL, 0, 0.5};
+    hewn_stream vertices = {put_vertex, job->vertex_count, VERTEX_ROOM, NULL, 0, 0.5, NULL};
     HEWN_TRY(hewn_stream_write(job, &vertices, output, error));
-    hewn_stream faces = {put_face, job->face_count, 0, face_room, 0.5, 0.5};
+    hewn_stream faces = {put_face, job->face_count, 0, face_room, 0.5, 0.5, NULL};
     return hewn_stream_write(job, &faces, output, error);
 }
 

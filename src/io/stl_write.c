@@ -4,33 +4,42 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/clones.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "io/bytes.h"
 #include "io/remark.h"
 #include "io/stream.h"
 
-enum { HEADER = 80, FACET = 50 };
+enum { HEADER = 80, FACET = 50, RUN = 64 };
+
+/* --- facets ------------------------------------------------------------------------------------------------------- */
+
+/* Some facets at once: their normals are computed in lanes. */
+typedef struct facet_run {
+    float corner[3][3][RUN]; /* corner, axis, facet */
+    float normal[3][RUN];
+    uint32_t attribute[RUN];
+} facet_run;
 
 /* Of length 1, or 0 for a facet without area. */
-static void facet_normal(const float *a, const float *b, const float *c, float out[3])
+HEWN_CLONES static void find_normals(facet_run *run)
 {
-    double u[3], v[3];
-    for (int axis = 0; axis < 3; axis++) {
-        u[axis] = (double)b[axis] - (double)a[axis];
-        v[axis] = (double)c[axis] - (double)a[axis];
+    for (int i = 0; i < RUN; i++) {
+        double u[3], v[3], n[3];
+        for (int axis = 0; axis < 3; axis++) {
+            u[axis] = (double)run->corner[1][axis][i] - (double)run->corner[0][axis][i];
+            v[axis] = (double)run->corner[2][axis][i] - (double)run->corner[0][axis][i];
+        }
+        n[0] = u[1] * v[2] - u[2] * v[1];
+        n[1] = u[2] * v[0] - u[0] * v[2];
+        n[2] = u[0] * v[1] - u[1] * v[0];
+        double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), divisor = length > 0 ? length : 1;
+        for (int axis = 0; axis < 3; axis++) {
+            float quotient = (float)(n[axis] / divisor);
+            run->normal[axis][i] = length > 0 ? quotient : 0.0f; /* not -0 */
+        }
     }
-    double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int axis = 0; axis < 3; axis++)
-        out[axis] = length > 0 ? (float)(n[axis] / length) : 0.0f;
-}
-
-static char *put_vector(const float *vector, char *to)
-{
-    for (int axis = 0; axis < 3; axis++)
-        to = hewn_put_float(to, vector[axis]);
-    return to;
 }
 
 /* The face that a place in `corners` belongs to: the last one that begins there or before, of those with corners. */
@@ -59,23 +68,61 @@ static uint32_t attribute_of(const hewn_writing *job, uint64_t place)
     return value >= 0 && value <= UINT16_MAX ? (uint32_t)value : 0;
 }
 
-static char *put_facet(const hewn_writing *job, uint64_t t, char *to)
+static void gather(const hewn_writing *job, uint64_t t, int i, facet_run *run)
 {
     uint64_t place[3];
-    float normal[3], corner[3][3];
     hewn_writing_triangle(job, t, place);
     for (int k = 0; k < 3; k++) {
         double position[3];
         hewn_writing_position(job, job->corners[place[k]], position);
         for (int axis = 0; axis < 3; axis++)
-            corner[k][axis] = (float)position[axis];
+            run->corner[k][axis][i] = (float)position[axis];
     }
-    facet_normal(corner[0], corner[1], corner[2], normal);
-    to = put_vector(normal, to);
-    for (int k = 0; k < 3; k++)
-        to = put_vector(corner[k], to);
-    return hewn_put_u16(to, attribute_of(job, place[0]));
+    run->attribute[i] = attribute_of(job, place[0]);
 }
+
+/* The same of triangle buffers, whose positions are floats. */
+static void gather_floats(const hewn_writing *job, uint64_t begin, int count, facet_run *run)
+{
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            const uint64_t place = 3 * (begin + (uint64_t)i) + (uint64_t)k;
+            const float *position = job->floats + 3 * (uint64_t)job->corners[place];
+            for (int axis = 0; axis < 3; axis++)
+                run->corner[k][axis][i] = position[axis];
+        }
+}
+
+static char *put_facets(const facet_run *run, int count, char *to)
+{
+    for (int i = 0; i < count; i++) {
+        for (int axis = 0; axis < 3; axis++)
+            to = hewn_put_float(to, run->normal[axis][i]);
+        for (int k = 0; k < 3; k++)
+            for (int axis = 0; axis < 3; axis++)
+                to = hewn_put_float(to, run->corner[k][axis][i]);
+        to = hewn_put_u16(to, run->attribute[i]);
+    }
+    return to;
+}
+
+static char *put_run(const hewn_writing *job, uint64_t begin, uint64_t end, char *to)
+{
+    facet_run run = {0};
+    const bool plain = job->floats && !job->cut && !job->own;
+    for (uint64_t t = begin; t < end; t += RUN) {
+        const int count = end - t < RUN ? (int)(end - t) : RUN;
+        if (plain)
+            gather_floats(job, t, count, &run);
+        for (int i = 0; i < count && !plain; i++)
+            gather(job, t + (uint64_t)i, i, &run);
+        find_normals(&run);
+        to = put_facets(&run, count, to);
+    }
+    return to;
+}
+
+/* --- the file ----------------------------------------------------------------------------------------------------- */
 
 static hewn_result fits(const hewn_writing *job, hewn_error *error)
 {
@@ -118,8 +165,9 @@ static hewn_result prepare(hewn_writing *job, hewn_error *error)
 
 static hewn_result write(const hewn_writing *job, hewn_output *output, hewn_error *error)
 {
+    hewn_output_expect(output, job->head_length + FACET * job->triangle_count);
     HEWN_TRY(hewn_output_write(output, job->head, job->head_length, error));
-    hewn_stream facets = {put_facet, job->triangle_count, FACET, NULL, 0, 1};
+    hewn_stream facets = {.put_run = put_run, .count = job->triangle_count, .room = FACET, .span = 1};
     return hewn_stream_write(job, &facets, output, error);
 }
 

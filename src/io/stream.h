@@ -1,10 +1,10 @@
-/* Writing many small things through one buffer, with progress. */
+/* Writing many small things, by all threads and in their order, with progress. */
 #ifndef HEWN_SRC_IO_STREAM_H
 #define HEWN_SRC_IO_STREAM_H
 
 #include "io/formats.h"
 
-/* Puts item `index` at `to` and returns its end. */
+/* Puts item `index` at `to` and returns its end. Several threads call it at once. */
 typedef char *(*hewn_put_item)(const hewn_writing *job, uint64_t index, char *to);
 
 typedef struct hewn_stream {
@@ -13,6 +13,7 @@ typedef struct hewn_stream {
     size_t room;                                                /* the most bytes that an item takes, */
     size_t (*room_of)(const hewn_writing *job, uint64_t index); /* or where this is not NULL, that item */
     double begin, span;                                         /* its share of the whole work, for progress */
+    char *(*put_run)(const hewn_writing *job, uint64_t begin, uint64_t end, char *to); /* NULL, or many at once */
 } hewn_stream;
 
 /* Writes all items. HEWN_IO, HEWN_CANCELLED, HEWN_OUT_OF_MEMORY. */

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "base/clones.h"
 #include "base/error.h"
 #include "base/progress.h"
 #include "io/formats.h"
@@ -81,23 +82,76 @@ static hewn_result look_up(const hewn_progress *progress, uint64_t done, hewn_er
     return done % (16 * HEWN_WRITE_BLOCK) == 0 ? hewn_progress_report(progress, "write", 0, error) : HEWN_OK;
 }
 
+/* The largest of some indices. */
+HEWN_CLONES static uint32_t find_largest(const uint32_t *indices, uint64_t count)
+{
+    uint32_t largest = 0;
+    for (uint64_t i = 0; i < count; i++)
+        largest = indices[i] > largest ? indices[i] : largest;
+    return largest;
+}
+
+/* Whether none of some numbers is infinite or NaN, whose exponents have all bits set. */
+HEWN_CLONES static bool all_finite(const float *numbers, uint64_t count)
+{
+    uint32_t most = 0;
+    for (uint64_t i = 0; i < count; i++) {
+        uint32_t bits;
+        memcpy(&bits, numbers + i, sizeof bits);
+        bits &= 0x7FFFFFFFu;
+        most = bits > most ? bits : most;
+    }
+    return most < 0x7F800000u;
+}
+
+/* Numbers are looked at in runs, some of them at once, and one by one only where one of them is wrong. */
+enum { CHECK_RUN = 1 << 16, RUNS_AT_ONCE = 16 };
+
+static hewn_result blame_number(const hewn_triangles *mesh, uint64_t begin, uint64_t end, bool index, hewn_error *error)
+{
+    for (uint64_t i = begin; i < end; i++) {
+        if (index && mesh->indices[i] >= mesh->vertex_count)
+            return hewn_fail(error, HEWN_BAD_INPUT, "triangle %llu names vertex %u, but there are %llu vertices",
+                             (unsigned long long)(i / 3), mesh->indices[i], (unsigned long long)mesh->vertex_count);
+        if (!index && !isfinite(mesh->positions[i]))
+            return hewn_fail(error, HEWN_BAD_INPUT, "the position of vertex %llu is not finite",
+                             (unsigned long long)(i / 3));
+    }
+    return HEWN_OK;
+}
+
+static bool all_good(const hewn_triangles *mesh, bool index, uint64_t begin, uint64_t end)
+{
+    bool good = true;
+#pragma omp parallel for schedule(static) reduction(&& : good) if (end - begin > 4 * (uint64_t)CHECK_RUN)
+    for (uint64_t at = begin; at < end; at += CHECK_RUN) {
+        const uint64_t length = end - at < CHECK_RUN ? end - at : CHECK_RUN;
+        good = good && (index ? find_largest(mesh->indices + at, length) < mesh->vertex_count
+                              : all_finite(mesh->positions + at, length));
+    }
+    return good;
+}
+
+static hewn_result check_numbers(const hewn_triangles *mesh, bool index, const hewn_progress *progress,
+                                 hewn_error *error)
+{
+    const uint64_t count = 3 * (index ? mesh->triangle_count : mesh->vertex_count);
+    for (uint64_t begin = 0, end; begin < count; begin = end) {
+        end = count - begin < RUNS_AT_ONCE * CHECK_RUN ? count : begin + RUNS_AT_ONCE * CHECK_RUN;
+        if (!all_good(mesh, index, begin, end))
+            return blame_number(mesh, begin, end, index, error);
+        for (uint64_t at = begin + CHECK_RUN; at <= end; at += CHECK_RUN) /* who maps the numbers lets pages go here */
+            HEWN_TRY(hewn_progress_report(progress, "write", 0, error));
+    }
+    return HEWN_OK;
+}
+
 static hewn_result check_triangles(const hewn_triangles *mesh, const hewn_progress *progress, hewn_error *error)
 {
     if ((mesh->vertex_count > 0 && !mesh->positions) || (mesh->triangle_count > 0 && !mesh->indices))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "triangles without positions or indices");
-    for (uint64_t i = 0; i < 3 * mesh->triangle_count; i++) {
-        if (mesh->indices[i] >= mesh->vertex_count)
-            return hewn_fail(error, HEWN_BAD_INPUT, "triangle %llu names vertex %u, but there are %llu vertices",
-                             (unsigned long long)(i / 3), mesh->indices[i], (unsigned long long)mesh->vertex_count);
-        HEWN_TRY(look_up(progress, i + 1, error));
-    }
-    for (uint64_t i = 0; i < 3 * mesh->vertex_count; i++) {
-        if (!isfinite(mesh->positions[i]))
-            return hewn_fail(error, HEWN_BAD_INPUT, "the position of vertex %llu is not finite",
-                             (unsigned long long)(i / 3));
-        HEWN_TRY(look_up(progress, i + 1, error));
-    }
-    return HEWN_OK;
+    HEWN_TRY(check_numbers(mesh, true, progress, error));
+    return check_numbers(mesh, false, progress, error);
 }
 
 /* Numbers in files are finite: readers elsewhere take anything else ill. */

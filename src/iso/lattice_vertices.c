@@ -94,6 +94,25 @@ HEWN_LATTICE_INLINE void emit_row(edge_row *row, hewn_voxel type)
     }
 }
 
+/* Asks for what edges of a row towards the next slice will be the first to read: samples a slice farther, two with
+ * gradients. Rows follow each other at distances that processors do not foresee, so each read would be waited for. */
+HEWN_LATTICE_INLINE void fetch_row(const hewn_lattice *lattice, uint32_t j, uint32_t k, hewn_voxel type)
+{
+    enum { LINE = 64 };
+    const hewn_volume *volume = lattice->volume;
+    const uint32_t rim = lattice->rim, slice = k + 1 + lattice->normals - rim;
+    if (j < rim || j - rim >= volume->dims[1] || k + 1 >= lattice->dims[2] || slice >= volume->dims[2])
+        return;
+    const uint64_t *here = hewn_lattice_bits(lattice, j, k), *above = hewn_lattice_bits(lattice, j, k + 1);
+    const size_t size = hewn_voxel_size(type), length = size * volume->dims[0], part = 64 * size;
+    const char *row = (const char *)volume->samples +
+                      size * (lattice->first + volume->dims[0] * (j - rim + (uint64_t)volume->dims[1] * slice));
+    for (uint32_t word = 0; word < lattice->words; word++)
+        if (here[word] ^ above[word])
+            for (size_t at = word * part; at < word * part + part && at < length; at += LINE)
+                __builtin_prefetch(row + at);
+}
+
 HEWN_LATTICE_INLINE void emit_slice(const hewn_lattice *lattice, uint32_t k, hewn_triangles *out, hewn_voxel type)
 {
     for (uint32_t j = 0; j < lattice->dims[1]; j++) {
@@ -107,6 +126,8 @@ HEWN_LATTICE_INLINE void emit_slice(const hewn_lattice *lattice, uint32_t k, hew
             if (axis == 0 || at[axis] + 1 < lattice->dims[axis])
                 emit_row(&row, type);
         }
+        if (j + 1 < lattice->dims[1])
+            fetch_row(lattice, j + 1, k, type);
     }
 }
 

@@ -39,13 +39,29 @@ void hewn_certify_counts(const hewn_star_counts *counts, uint64_t faces, hewn_ce
 
 /* --- the certificate ---------------------------------------------------------------------------------------------- */
 
-static hewn_result examine_topology(const hewn_face_view *view, const hewn_stars *stars, const hewn_progress *progress,
-                                    hewn_certificate *out, hewn_error *error)
+/* Where rows of all stars have to be there at once. */
+static hewn_result examine_stars(const hewn_face_view *view, const hewn_progress *progress, hewn_star_counts *counts,
+                                 hewn_error *error)
+{
+    hewn_stars stars;
+    HEWN_TRY(hewn_stars_build(view, &stars, error));
+    hewn_result result = hewn_certify_stars(view, &stars, NULL, counts, stage_name, progress, error);
+    hewn_stars_free(&stars);
+    return result;
+}
+
+static hewn_result examine_topology(const hewn_face_view *view, const hewn_progress *progress, hewn_certificate *out,
+                                    hewn_error *error)
 {
     hewn_star_counts counts = {0};
-    HEWN_TRY(hewn_components_count(view, stars, &out->components, error));
+    uint64_t roots;
+    bool done;
+    HEWN_TRY(hewn_trees_count(view, &roots, error));
     HEWN_TRY(hewn_progress_report(progress, stage_name, 0.6, error));
-    HEWN_TRY(hewn_certify_stars(view, stars, NULL, &counts, stage_name, progress, error));
+    HEWN_TRY(hewn_stars_examine_ranges(view, stage_name, progress, &counts, &done, error));
+    if (!done)
+        HEWN_TRY(examine_stars(view, progress, &counts, error));
+    out->components = roots - (view->vertex_count - counts.used_vertices); /* the others are trees of their own */
     hewn_certify_counts(&counts, view->face_count - hewn_count_collapsed_faces(view), out);
     return HEWN_OK;
 }
@@ -67,13 +83,8 @@ static hewn_result certify(const hewn_triangles *triangles, const hewn_progress 
     out->volume = measure.volume;
     out->area = measure.area;
     out->degenerate_faces = measure.flat_triangles;
-    hewn_stars stars;
-    HEWN_TRY(hewn_stars_build(&view, &stars, error));
-    hewn_result result = hewn_progress_report(progress, stage_name, 0.5, error);
-    if (result == HEWN_OK)
-        result = examine_topology(&view, &stars, progress, out, error);
-    hewn_stars_free(&stars);
-    return result;
+    HEWN_TRY(hewn_progress_report(progress, stage_name, 0.5, error));
+    return examine_topology(&view, progress, out, error);
 }
 
 hewn_result hewn_certify(const hewn_triangles *triangles, const hewn_progress *progress, hewn_certificate *out,

@@ -217,8 +217,8 @@ static void measure_face(const part_check *of, uint64_t face, hewn_measure_sums 
     }
     for (int k = 0; k < 3; k++)
         for (int axis = 0; axis < 3; axis++) {
-            bounds->lo[axis] = fmin(bounds->lo[axis], points[k][axis]);
-            bounds->hi[axis] = fmax(bounds->hi[axis], points[k][axis]);
+            bounds->lo[axis] = points[k][axis] < bounds->lo[axis] ? points[k][axis] : bounds->lo[axis];
+            bounds->hi[axis] = points[k][axis] > bounds->hi[axis] ? points[k][axis] : bounds->hi[axis];
         }
     hewn_measured one = hewn_measure_corners(points[0], points[1], points[2], of->all->origin, INFINITY);
     one.flat = one.flat && hewn_points_collinear(points[0], points[1], points[2]);

@@ -37,11 +37,9 @@ void hewn_trees_join(_Atomic uint32_t *parent, uint32_t a, uint32_t b)
     }
 }
 
-/* Trees of vertices joined by faces; a used vertex that is its own parent stands for one component. */
-hewn_result hewn_trees_grow(const hewn_face_view *view, const hewn_stars *stars, _Atomic uint32_t **out,
-                            uint64_t *count, hewn_error *error)
+static hewn_result grow(const hewn_face_view *view, _Atomic uint32_t **out, hewn_error *error)
 {
-    uint64_t vertices = view->vertex_count, roots = 0;
+    uint64_t vertices = view->vertex_count;
     _Atomic uint32_t *parent = hewn_alloc(vertices, sizeof *parent);
     *out = parent;
     if (!parent)
@@ -60,22 +58,36 @@ hewn_result hewn_trees_grow(const hewn_face_view *view, const hewn_stars *stars,
             for (uint64_t c = begin + 1; c < end; c++)
                 hewn_trees_join(parent, view->corners[begin], view->corners[c]);
         }
-#pragma omp for schedule(static) reduction(+ : roots)
-        for (uint64_t v = 0; v < vertices; v++)
-            roots +=
-                hewn_star_length(stars, (uint32_t)v) > 0 && atomic_load_explicit(&parent[v], memory_order_relaxed) == v;
     }
+    return HEWN_OK;
+}
+
+/* Trees of vertices joined by faces; a used vertex that is its own parent stands for one component. */
+hewn_result hewn_trees_grow(const hewn_face_view *view, const hewn_stars *stars, _Atomic uint32_t **out,
+                            uint64_t *count, hewn_error *error)
+{
+    uint64_t roots = 0;
+    HEWN_TRY(grow(view, out, error));
+    _Atomic uint32_t *parent = *out;
+#pragma omp parallel for schedule(static) reduction(+ : roots) if (view->face_count >= HEWN_CHECK_ALONE)
+    for (uint64_t v = 0; v < view->vertex_count; v++)
+        roots +=
+            hewn_star_length(stars, (uint32_t)v) > 0 && atomic_load_explicit(&parent[v], memory_order_relaxed) == v;
     *count = roots;
     return HEWN_OK;
 }
 
-hewn_result hewn_components_count(const hewn_face_view *view, const hewn_stars *stars, uint64_t *count,
-                                  hewn_error *error)
+hewn_result hewn_trees_count(const hewn_face_view *view, uint64_t *count, hewn_error *error)
 {
     _Atomic uint32_t *parent;
-    hewn_result result = hewn_trees_grow(view, stars, &parent, count, error);
+    uint64_t roots = 0;
+    HEWN_TRY(grow(view, &parent, error));
+#pragma omp parallel for schedule(static) reduction(+ : roots) if (view->face_count >= HEWN_CHECK_ALONE)
+    for (uint64_t v = 0; v < view->vertex_count; v++)
+        roots += atomic_load_explicit(&parent[v], memory_order_relaxed) == v;
+    *count = roots;
     hewn_free((void *)parent);
-    return result;
+    return HEWN_OK;
 }
 
 /* --- slots -------------------------------------------------------------------------------------------------------- */

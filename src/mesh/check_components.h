@@ -14,6 +14,9 @@
  * HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_trees_grow(const hewn_face_view *view, const hewn_stars *stars, _Atomic uint32_t **out,
                             uint64_t *count, hewn_error *error);
+
+/* How many roots there are, with those of vertices without faces; each stands for itself. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_trees_count(const hewn_face_view *view, uint64_t *count, hewn_error *error);
 uint32_t hewn_trees_root(_Atomic uint32_t *parent, uint32_t v);
 void hewn_trees_join(_Atomic uint32_t *parent, uint32_t a, uint32_t b);
 
@@ -28,11 +31,7 @@ typedef struct hewn_components {
     uint32_t *slots; /* of each vertex */
 } hewn_components;
 
-/* How many there are; linear. HEWN_OUT_OF_MEMORY. */
-hewn_result hewn_components_count(const hewn_face_view *view, const hewn_stars *stars, uint64_t *count,
-                                  hewn_error *error);
-
-/* The same, and the slots of at most most_listed of them. */
+/* How many there are, and the slots of at most most_listed of them. */
 hewn_result hewn_components_find(const hewn_face_view *view, const hewn_stars *stars, uint32_t most_listed,
                                  hewn_components *out, hewn_error *error);
 void hewn_components_free(hewn_components *components);

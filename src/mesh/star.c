@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 /* Rows up to RING_LIMIT try the cheap walk around the vertex; rows past ROW_LIMIT leave the threads' fixed memory. */
-enum { RING_LIMIT = 16, ROW_LIMIT = 256, PART_LIMIT = 8 };
+enum { RING_LIMIT = 16, ROW_LIMIT = HEWN_STAR_SHORT, PART_LIMIT = 8 };
 
 /* --- sorting corners into rows ------------------------------------------------------------------------------------ */
 
@@ -195,14 +195,18 @@ static void find_fans(const hewn_star_room *room, uint32_t length)
         }
 }
 
-bool hewn_star_read(const hewn_face_view *view, const hewn_stars *stars, uint32_t v, const hewn_star_room *room)
+static bool read_row(const hewn_face_view *view, const uint32_t *row, uint32_t length, const hewn_star_room *room)
 {
-    uint32_t length = hewn_star_length(stars, v);
-    gather(view, stars->corners + stars->first[v], length, room->arcs);
+    gather(view, row, length, room->arcs);
     if (length <= RING_LIMIT && is_ring(room->arcs, length))
         return true;
     find_fans(room, length);
     return false;
+}
+
+bool hewn_star_read(const hewn_face_view *view, const hewn_stars *stars, uint32_t v, const hewn_star_room *room)
+{
+    return read_row(view, stars->corners + stars->first[v], hewn_star_length(stars, v), room);
 }
 
 /* A star that is no ring: what its edges and fans add to the counts. */
@@ -248,17 +252,22 @@ void hewn_star_room_free(hewn_star_room *room)
     hewn_free(room->parent);
 }
 
-static void examine_vertex(const hewn_face_view *view, const hewn_stars *stars, uint32_t v, const hewn_star_room *room,
-                           hewn_star_counts *counts)
+void hewn_star_examine(const hewn_face_view *view, const uint32_t *row, uint32_t length, uint32_t v,
+                       const hewn_star_room *room, hewn_star_counts *counts)
 {
-    uint32_t length = hewn_star_length(stars, v);
     counts->used_vertices++;
-    if (!hewn_star_read(view, stars, v, room)) {
+    if (!read_row(view, row, length, room)) {
         count_star(room, length, v, counts);
         return;
     }
     for (uint32_t i = 0; i < length; i++)
         counts->edges += room->arcs[i].head > v;
+}
+
+static void examine_vertex(const hewn_face_view *view, const hewn_stars *stars, uint32_t v, const hewn_star_room *room,
+                           hewn_star_counts *counts)
+{
+    hewn_star_examine(view, stars->corners + stars->first[v], hewn_star_length(stars, v), v, room, counts);
 }
 
 /* --- all stars ---------------------------------------------------------------------------------------------------- */

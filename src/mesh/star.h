@@ -35,6 +35,13 @@ void hewn_stars_free(hewn_stars *stars);
 hewn_result hewn_stars_examine(const hewn_face_view *view, const hewn_stars *stars, uint64_t begin, uint64_t end,
                                const uint32_t *slots, hewn_star_counts *counts, hewn_error *error);
 
+/* The same of all vertices of a mesh of triangles, without rows of all of them at once: they are made for a few thousand
+ * vertices at a time, from the runs of triangles that name any of these. False in `*done`, with nothing counted, where
+ * a run of triangles names vertices all over the mesh, so that the triangles would be read too often.
+ * HEWN_OUT_OF_MEMORY, HEWN_CANCELLED. */
+hewn_result hewn_stars_examine_ranges(const hewn_face_view *view, const char *stage, const hewn_progress *progress,
+                                      hewn_star_counts *counts, bool *done, hewn_error *error);
+
 /* --- one star, read closely --------------------------------------------------------------------------------------- */
 
 /* A corner of a face at v is an arc of v's link, from the next vertex of the face (`tail`) to the one before (`head`).
@@ -58,6 +65,13 @@ void hewn_star_room_free(hewn_star_room *room);
  * rows): nothing is wrong there. Otherwise `ends` are sorted and `parent` made. */
 bool hewn_star_read(const hewn_face_view *view, const hewn_stars *stars, uint32_t v, const hewn_star_room *room);
 uint32_t hewn_star_fan(const hewn_star_room *room, uint32_t arc);
+
+/* Adds what one star says, of its row, which is not empty. */
+void hewn_star_examine(const hewn_face_view *view, const uint32_t *row, uint32_t length, uint32_t v,
+                       const hewn_star_room *room, hewn_star_counts *counts);
+
+/* Rows that have room in memory of the thread's own. */
+enum { HEWN_STAR_SHORT = 256 };
 
 static inline uint32_t hewn_star_length(const hewn_stars *stars, uint32_t v)
 {

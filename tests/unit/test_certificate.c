@@ -1,6 +1,7 @@
 /* The certificate: known meshes, and random soups against a twin that counts the slow and obvious way. */
 #include <omp.h>
 
+#include "hewn/check.h"
 #include "test_mesh_support.h"
 
 static hewn_certificate certify(hewn_triangles *mesh)
@@ -273,6 +274,53 @@ static void test_same_bits_for_any_number_of_threads(void **state)
     hewn_triangles_destroy(&mesh);
 }
 
+/* Some faces taken away, turned over, doubled and collapsed, and one vertex that very many faces meet at. */
+static void damage(hewn_triangles *mesh, random_state *random)
+{
+    enum { FAN = 1000 };
+    const uint32_t faces = (uint32_t)mesh->triangle_count, hub = random_below(random, (uint32_t)mesh->vertex_count);
+    for (int i = 0; i < 400; i++) {
+        uint32_t *face = mesh->indices + 3 * (uint64_t)random_below(random, faces), first = face[0];
+        if (i % 4 == 0)
+            memcpy(face, mesh->indices + 3 * (uint64_t)random_below(random, faces), 3 * sizeof *face);
+        else if (i % 4 == 1)
+            face[0] = face[1];
+        else
+            face[0] = face[i % 4 - 1], face[i % 4 - 1] = first;
+    }
+    for (uint32_t i = 0; i < FAN; i++)
+        set_triangle(mesh, faces / 2 + i, hub, (hub + 2 + i) % (uint32_t)mesh->vertex_count,
+                     (hub + 3 + i) % (uint32_t)mesh->vertex_count);
+}
+
+/* Stars are examined range by range of the vertices, or all at once where faces are in no order. The check has them all
+ * at once always. */
+static void test_many_ranges_against_the_check(void **state)
+{
+    (void)state;
+    random_state random = {5};
+    for (int round = 0; round < 3; round++) {
+        hewn_triangles mesh = make_torus(700, 400); /* nine ranges */
+        hewn_check *check;
+        if (round > 0)
+            damage(&mesh, &random);
+        if (round > 1)
+            shuffle_mesh(&mesh, &random);
+        assert_int_equal(hewn_check_triangles(&mesh, NULL, &check, NULL), HEWN_OK);
+        const hewn_certificate c = take(mesh), *other = &check->certificate;
+        assert_int_equal(c.manifold, round == 0);
+        assert_int_equal(c.manifold, other->manifold);
+        assert_int_equal(c.closed, other->closed);
+        assert_int_equal(c.oriented, other->oriented);
+        assert_int_equal(c.components, other->components);
+        assert_int_equal(c.genus, other->genus);
+        assert_int_equal(c.boundary_edges, other->boundary_edges);
+        assert_int_equal(c.non_manifold_edges, other->non_manifold_edges);
+        assert_int_equal(c.non_manifold_vertices, other->non_manifold_vertices);
+        hewn_check_destroy(&check);
+    }
+}
+
 /* One face alone, with more threads than faces: nothing of an idle thread may show. */
 static void test_one_face(void **state)
 {
@@ -474,6 +522,7 @@ int main(void)
         cmocka_unit_test(test_bad_input_names_the_first),
         cmocka_unit_test(test_cancels_at_every_report),
         cmocka_unit_test(test_same_bits_for_any_number_of_threads),
+        cmocka_unit_test(test_many_ranges_against_the_check),
         cmocka_unit_test(test_one_face),
         cmocka_unit_test(test_volume_far_from_the_origin),
         cmocka_unit_test(test_random_soups_against_the_twin),

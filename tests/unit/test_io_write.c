@@ -1,6 +1,7 @@
 /* Writing meshes: what is written reads back as it was, by Hewn and by assimp, and failures leave nothing behind. */
 #include <dirent.h>
 #include <errno.h>
+#include <omp.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -213,6 +214,78 @@ static void test_same_bytes_every_time(void **state)
     hewn_triangles_destroy(&mesh);
 }
 
+typedef struct file_bytes {
+    char *bytes;
+    size_t length;
+} file_bytes;
+
+static file_bytes bytes_of(const char *path)
+{
+    file_bytes of;
+    assert_int_equal(hewn_file_read(path, SIZE_MAX / 4, &of.bytes, &of.length, NULL), HEWN_OK);
+    return of;
+}
+
+/* Large enough for many more blocks than may wait to be written. */
+static void test_same_bytes_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    static const char *const all[] = {"mesh.glb", "mesh.obj", "mesh.ply", "mesh.stl", "mesh.off"};
+    hewn_triangles mesh = make_torus(500, 300);
+    const int usual = omp_get_max_threads();
+    for (int i = 0; i < 5; i++) {
+        omp_set_num_threads(1);
+        write_mesh(&mesh, all[i], NULL);
+        file_bytes one = bytes_of(all[i]);
+        for (int threads = 2; threads <= 9; threads += threads < 3 ? 1 : 3) {
+            omp_set_num_threads(threads);
+            write_mesh(&mesh, all[i], NULL);
+            file_bytes more = bytes_of(all[i]);
+            assert_int_equal(one.length, more.length);
+            assert_memory_equal(one.bytes, more.bytes, one.length);
+            hewn_free(more.bytes);
+        }
+        hewn_free(one.bytes);
+    }
+    omp_set_num_threads(usual);
+    hewn_triangles_destroy(&mesh);
+}
+
+/* One face that is larger than any block, between many small ones. */
+static void test_a_huge_face(void **state)
+{
+    (void)state;
+    enum { SMALL = 9000, CORNERS = 1100000, AT = 5000 };
+    static const char *const polygons[] = {"huge.ply", "huge.obj", "huge.off"};
+    uint64_t *first = hewn_alloc(SMALL + 2, sizeof *first), at = 0;
+    uint32_t *corners = hewn_alloc(3 * SMALL + CORNERS, sizeof *corners);
+    double *positions = hewn_alloc(CORNERS, 3 * sizeof *positions);
+    for (uint32_t f = 0; f <= SMALL; f++) {
+        first[f] = at;
+        for (uint32_t k = 0, count = f == AT ? CORNERS : 3; k < count; k++)
+            corners[at++] = f == AT ? k : f + 7 * k;
+    }
+    first[SMALL + 1] = at;
+    for (uint32_t i = 0; i < 3 * CORNERS; i++)
+        positions[i] = i % 1009;
+    hewn_model model = {
+        .vertex_count = CORNERS, .positions = positions, .face_count = SMALL + 1, .first = first, .corners = corners};
+    for (int i = 0; i < 3; i++) {
+        hewn_error error = {0};
+        hewn_model read;
+        if (hewn_model_write(&model, polygons[i], NULL, &error) != HEWN_OK)
+            fail_msg("%s: %s", polygons[i], error.message);
+        assert_int_equal(hewn_model_read(polygons[i], NULL, &read, &error), HEWN_OK);
+        assert_int_equal(read.face_count, SMALL + 1);
+        assert_memory_equal(read.first, first, (SMALL + 2) * sizeof *first);
+        assert_memory_equal(read.corners, corners, at * sizeof *corners);
+        hewn_model_destroy(&read);
+    }
+    hewn_free(first);
+    hewn_free(corners);
+    hewn_free(positions);
+}
+
 static uint32_t word_at(const char *bytes, size_t at)
 {
     uint32_t word;
@@ -332,7 +405,7 @@ static void test_cancelling_leaves_nothing(void **state)
             hewn_result result =
                 hewn_triangles_write(&mesh, files[i], &(hewn_write_desc){.progress = &progress}, &error);
             if (result == HEWN_OK) {
-                assert_true(allowed > 4);
+                assert_true(allowed > 1); /* how often it is asked depends on what the other threads do */
                 assert_int_equal(count_entries(true), 1);
                 break;
             }
@@ -447,6 +520,8 @@ int main(void)
         IN_FOLDER(test_index_sizes),
         IN_FOLDER(test_empty_meshes),
         IN_FOLDER(test_same_bytes_every_time),
+        IN_FOLDER(test_same_bytes_for_any_number_of_threads),
+        IN_FOLDER(test_a_huge_face),
         IN_FOLDER(test_headers),
         cmocka_unit_test(test_format_of),
         IN_FOLDER(test_refused_before_anything_is_written),
