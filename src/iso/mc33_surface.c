@@ -33,10 +33,10 @@ static hewn_result create_fixed(hewn_extractor *extractor, hewn_error *error)
 {
     hewn_mc33_programs *own = &extractor->mc33;
     const hewn_fixed_kernel kernels[] = {
-        HEWN_FIXED_KERNEL(mc33_ask, mc33_ask_push, false, &own->ask),
-        HEWN_FIXED_KERNEL(mc33_count, mc33_count_push, false, &own->count),
-        HEWN_FIXED_KERNEL(mc33_spread, mc33_spread_push, false, &own->spread),
-        HEWN_FIXED_KERNEL(mc33_triangles, triangle_push, false, &own->triangles),
+        HEWN_FIXED_KERNEL(mc33_ask, mc33_ask_push, false, true, &own->ask),
+        HEWN_FIXED_KERNEL(mc33_count, mc33_count_push, false, true, &own->count),
+        HEWN_FIXED_KERNEL(mc33_spread, mc33_spread_push, false, true, &own->spread),
+        HEWN_FIXED_KERNEL(mc33_triangles, triangle_push, false, true, &own->triangles),
     };
     return hewn_fixed_kernels_create(extractor->device, kernels, sizeof kernels / sizeof *kernels, error);
 }
@@ -46,10 +46,18 @@ static hewn_result create_all(hewn_extractor *extractor, hewn_error *error)
     HEWN_TRY(create_table(extractor, error));
     HEWN_TRY(create_fixed(extractor, error));
     const uint32_t near = hewn_extractor_flavour(extractor);
-    hewn_kernel_desc decide = {"mc33_decide", hewn_text_iso_head, hewn_text_mc33_decide, HEWN_FLAVOUR_POINT | near,
-                               sizeof(struct hewn_mc33_decide_push)};
-    hewn_kernel_desc centres = {"mc33_centres", hewn_text_iso_head, hewn_text_mc33_centres,
-                                HEWN_FLAVOUR_GRADIENT | near, sizeof(struct hewn_mc33_centre_push)};
+    hewn_kernel_desc decide = {"mc33_decide",
+                               hewn_text_iso_head,
+                               hewn_text_mc33_decide,
+                               HEWN_FLAVOUR_POINT | near,
+                               sizeof(struct hewn_mc33_decide_push),
+                               .soon = true};
+    hewn_kernel_desc centres = {"mc33_centres",
+                                hewn_text_iso_head,
+                                hewn_text_mc33_centres,
+                                HEWN_FLAVOUR_GRADIENT | near,
+                                sizeof(struct hewn_mc33_centre_push),
+                                .soon = true};
     HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &decide, &extractor->mc33.decide, error));
     return hewn_code_program(extractor->device, extractor->code, &centres, &extractor->mc33.centres, error);
 }
