@@ -33,7 +33,7 @@ struct hewn_ahead {
     hewn_hash *known; /* programs that the driver has had; the caller's thread only */
     size_t known_count, known_capacity;
     job *jobs; /* none is removed before all are done */
-    size_t job_count, job_capacity;
+    size_t job_count, job_capacity, taken;
     hewn_empty_run own;
     bool own_open;
     pthread_mutex_t lock;   /* of the jobs */
@@ -197,11 +197,18 @@ hewn_result hewn_ahead_add(hewn_device *device, const hewn_program *program, con
         ahead->jobs[ahead->job_count++] = one;
     pthread_cond_broadcast(&ahead->changed);
     pthread_mutex_unlock(&ahead->lock);
+    if (result == HEWN_OK)
+        ahead->taken++;
     if (result != HEWN_OK)
         hewn_free(one.words);
     else if (!ahead->threaded)
         ahead->threaded = pthread_create(&ahead->thread, NULL, make_ahead, ahead) == 0;
     return result;
+}
+
+size_t hewn_ahead_taken(const hewn_device *device)
+{
+    return device->ahead ? device->ahead->taken : 0;
 }
 
 void hewn_ahead_forget(hewn_device *device, const hewn_program *program)

@@ -26,6 +26,9 @@ void hewn_ahead_forget(hewn_device *device, const hewn_program *program);
 /* Returns when all that were noted have their code. Device errors. */
 hewn_result hewn_ahead_finish(hewn_device *device, hewn_error *error);
 
+/* How many programs were noted so far that the driver was not known to have had. */
+size_t hewn_ahead_taken(const hewn_device *device);
+
 /* Ends the thread, after the program that it is at, and frees everything. */
 void hewn_ahead_stop(hewn_device *device);
 
