@@ -13,8 +13,8 @@
 static const char known_folder[] = "known";
 
 enum {
-    KNOWN_MOST = 4096,           /* programs that a driver has had: the latest ones */
-    WRITING_SECONDS_E9 = 5000000 /* nanoseconds that a driver may take to put a program's code on the disk */
+    KNOWN_MOST = 4096,            /* programs that a driver has had: the latest ones */
+    WRITING_NANOSECONDS = 5000000 /* that a driver may take to put a program's code on the disk */
 };
 
 /* A program that wants its code. */
@@ -252,7 +252,7 @@ static hewn_result take_part(hewn_ahead *ahead, hewn_error *error)
     }
     pthread_mutex_unlock(&ahead->lock);
     if (waited)
-        nanosleep(&(struct timespec){.tv_nsec = WRITING_SECONDS_E9}, NULL);
+        nanosleep(&(struct timespec){.tv_nsec = WRITING_NANOSECONDS}, NULL);
     return result;
 }
 
@@ -269,8 +269,12 @@ hewn_result hewn_ahead_finish(hewn_device *device, hewn_error *error)
     if (!ahead || ahead->job_count == 0)
         return HEWN_OK;
     if (!ahead->own_open) {
+        hewn_result opened = hewn_empty_run_open(device, &ahead->own, error);
+        if (opened != HEWN_OK) {
+            hewn_empty_run_close(device, &ahead->own);
+            return opened;
+        }
         ahead->own_open = true;
-        HEWN_TRY(hewn_empty_run_open(device, &ahead->own, error));
     }
     HEWN_TRY(take_part(ahead, error));
     hewn_result result = save_known(ahead, error);

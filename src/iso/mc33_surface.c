@@ -53,12 +53,13 @@ static hewn_result create_all(hewn_extractor *extractor, hewn_error *error)
                                HEWN_FLAVOUR_POINT | near,
                                sizeof(struct hewn_mc33_decide_push),
                                .soon = true};
+    /* Most meshes have no vertices in cells. */
     hewn_kernel_desc centres = {"mc33_centres",
                                 hewn_text_iso_head,
                                 hewn_text_mc33_centres,
                                 HEWN_FLAVOUR_GRADIENT | near,
                                 sizeof(struct hewn_mc33_centre_push),
-                                .soon = true};
+                                .soon = false};
     HEWN_TRY(hewn_code_program(extractor->device, extractor->code, &decide, &extractor->mc33.decide, error));
     return hewn_code_program(extractor->device, extractor->code, &centres, &extractor->mc33.centres, error);
 }
