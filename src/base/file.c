@@ -224,19 +224,24 @@ hewn_result hewn_output_create(const char *path, hewn_output **out, hewn_error *
     return HEWN_OK;
 }
 
-static hewn_result write_through(hewn_output *output, const char *bytes, size_t length, hewn_error *error)
+bool hewn_file_put(int file, const void *bytes, size_t length)
 {
-    while (length > 0) {
+    for (const char *at = bytes; length > 0;) {
         size_t part = length < ((size_t)1 << 30) ? length : (size_t)1 << 30;
-        ssize_t put = write(output->file, bytes, part);
+        ssize_t put = write(file, at, part);
         if (put < 0 && errno == EINTR)
             continue;
         if (put < 0)
-            return fail_output(output, "cannot write", errno, error);
-        bytes += put;
+            return false;
+        at += put;
         length -= (size_t)put;
     }
-    return HEWN_OK;
+    return true;
+}
+
+static hewn_result write_through(hewn_output *output, const char *bytes, size_t length, hewn_error *error)
+{
+    return hewn_file_put(output->file, bytes, length) ? HEWN_OK : fail_output(output, "cannot write", errno, error);
 }
 
 static hewn_result flush(hewn_output *output, hewn_error *error)

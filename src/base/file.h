@@ -9,6 +9,9 @@
  * folder or more than `limit` bytes). */
 hewn_result hewn_file_read(const char *path, size_t limit, char **bytes, size_t *length, hewn_error *error);
 
+/* Writes all of it to an open file, in as many steps as that takes; false where that fails, and errno says why. */
+bool hewn_file_put(int file, const void *bytes, size_t length);
+
 /* A buffered output that becomes visible under its name only when finished. Not thread-safe. */
 typedef struct hewn_output hewn_output;
 

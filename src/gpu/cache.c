@@ -10,6 +10,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/file.h"
 
 enum { PATH_BYTES = 4096 };
 
@@ -75,19 +76,6 @@ static bool read_all(int file, void *bytes, size_t length)
             return false;
         at += got;
         length -= (size_t)got;
-    }
-    return true;
-}
-
-static bool write_all(int file, const void *bytes, size_t length)
-{
-    const char *at = bytes;
-    while (length > 0) {
-        ssize_t put = write(file, at, length);
-        if (put <= 0)
-            return false;
-        at += put;
-        length -= (size_t)put;
     }
     return true;
 }
@@ -214,7 +202,7 @@ void hewn_cache_store(const hewn_cache *cache, const char *folder, hewn_hash key
     if (file < 0)
         return;
     file_header header = make_header(key, bytes, length);
-    bool whole = write_all(file, &header, sizeof header) && write_all(file, bytes, length);
+    bool whole = hewn_file_put(file, &header, sizeof header) && hewn_file_put(file, bytes, length);
     whole = close(file) == 0 && whole;
     if (!whole || rename(temporary, path) != 0)
         unlink(temporary);

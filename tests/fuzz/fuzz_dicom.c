@@ -3,6 +3,6 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    fuzz_volume(hewn_dicom_read, "hewn_dicom", data, size);
+    fuzz_volume(hewn_dicom_read, true, data, size);
     return 0;
 }

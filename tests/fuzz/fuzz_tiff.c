@@ -3,6 +3,6 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    fuzz_volume(hewn_tiff_read, NULL, data, size);
+    fuzz_volume(hewn_tiff_read, false, data, size);
     return 0;
 }

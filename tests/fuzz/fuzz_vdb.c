@@ -42,7 +42,7 @@ static void fuzz_blocks(const uint8_t *data, size_t size)
     uint32_t sum = 7;
     for (size_t i = 0; i < size; i++)
         sum = 31 * sum + data[i];
-    if (sum % 8 != 0)
+    if (sum % 32 != 0)
         return;
     hewn_volume_source source = {.bytes = (const char *)data, .length = size, .name = "fuzz", .desc = &desc};
     hewn_volume volume;
@@ -60,7 +60,7 @@ static void fuzz_blocks(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    fuzz_volume(hewn_vdb_read, "hewn_vdb", data, size);
+    fuzz_volume(hewn_vdb_read, true, data, size);
     fuzz_blocks(data, size);
     return 0;
 }

@@ -5,11 +5,11 @@
 
 #include <math.h>
 
+#include "eval/instructions.h"
 #include "hewn/hewn.h"
 #include "iso/extractor.h"
 
-/* Two streams: what decides how a tree is built, and what decides its numbers. Trees of one build share compiled code.
- */
+/* Two streams: what decides how a tree is built, and what decides its numbers. */
 typedef struct grower {
     hewn_field *field;
     uint64_t *build, *numbers;
@@ -159,59 +159,137 @@ static uint64_t count_crossings(hewn_extractor *extractor, const hewn_extract_de
     return crossings;
 }
 
-typedef struct tally {
-    uint64_t vertices;
-    uint32_t compared, compiled;
-} tally;
-
-static void check_tree(hewn_device *device, hewn_extractor **extractor, uint32_t build, uint32_t numbers, tally *sum)
+/* Extracts by marching cubes, which makes a vertex of every crossed edge that culling left; returns how many. */
+static uint64_t check_cells(hewn_extractor *extractor, uint32_t tree)
 {
-    hewn_field *field;
-    bool taken = false;
-    GPU_TEST_TRY(hewn_field_create(&field, &error));
-    hewn_node root = make_tree(field, build, numbers);
-    if (*extractor)
-        GPU_TEST_TRY(hewn_extractor_renumber(*extractor, field, root, &taken, &error));
-    if (!taken) {
-        hewn_extractor_destroy(extractor);
-        GPU_TEST_TRY(hewn_extractor_create(device, field, root, extractor, &error));
-        sum->compiled++;
-    }
-    const hewn_extract_desc desc = {
-        .bounds = bounds, .resolution = numbers % 3 == 0 ? 60 : 33, .method = HEWN_METHOD_MARCHING_CUBES};
+    const hewn_extract_desc desc = {.bounds = bounds,
+                                    .resolution = tree % 16 == 0  ? 60
+                                                  : tree % 4 == 1 ? 33
+                                                                  : 20,
+                                    .method = HEWN_METHOD_MARCHING_CUBES};
     hewn_triangles triangles;
     hewn_error error = {0};
-    if (hewn_extract(*extractor, &desc, &triangles, NULL, &error) != HEWN_OK && error.code != HEWN_BAD_INPUT)
-        fail_msg("tree %u, %u: %s", build, numbers, error.message);
-    uint64_t crossings = count_crossings(*extractor, &desc);
-    if (crossings != triangles.vertex_count)
-        fail_msg("tree %u, %u: %llu edges are crossed, %llu were found", build, numbers, (unsigned long long)crossings,
-                 (unsigned long long)triangles.vertex_count);
-    sum->vertices += triangles.vertex_count;
-    sum->compared++;
+    if (hewn_extract(extractor, &desc, &triangles, NULL, &error) != HEWN_OK && error.code != HEWN_BAD_INPUT)
+        fail_msg("tree %u: %s", tree, error.message);
+    uint64_t vertices = triangles.vertex_count, crossings = count_crossings(extractor, &desc);
+    if (crossings != vertices)
+        fail_msg("tree %u: %llu edges are crossed, %llu were found", tree, (unsigned long long)crossings,
+                 (unsigned long long)vertices);
     hewn_triangles_destroy(&triangles);
-    hewn_field_destroy(&field);
+    return vertices;
 }
 
-/* 10,000 trees in long runs: 200 ways to build one, each with 50 sets of numbers. */
+/* Each in code of its own, of which the compilation takes nearly all of the time. */
 static void hard_trees_keep_their_cells(void **state)
 {
     (void)state;
     unsigned messages;
     hewn_device *device = gpu_test_open(&messages);
-    uint32_t builds = gpu_test_long() ? 200 : 5, sets = gpu_test_long() ? 50 : 1;
-    const char *from = getenv("HEWN_SEED");
-    uint32_t first = from ? (uint32_t)strtoul(from, NULL, 10) : 1;
-    tally sum = {0};
-    for (uint32_t build = first; build < first + builds; build++) {
-        hewn_extractor *extractor = NULL;
-        for (uint32_t numbers = 0; numbers < sets; numbers++)
-            check_tree(device, &extractor, build, numbers, &sum);
+    uint32_t trees = gpu_test_long() ? 100 : 5;
+    uint64_t vertices = 0;
+    for (uint32_t tree = 1; tree <= trees; tree++) {
+        hewn_field *field;
+        hewn_extractor *extractor;
+        GPU_TEST_TRY(hewn_field_create(&field, &error));
+        hewn_node root = make_tree(field, tree, 0);
+        GPU_TEST_TRY(hewn_extractor_create(device, field, root, &extractor, &error));
+        vertices += check_cells(extractor, tree);
         hewn_extractor_destroy(&extractor);
+        hewn_field_destroy(&field);
     }
-    print_message("# %u trees compared, %u compiled, %llu vertices\n", sum.compared, sum.compiled,
-                  (unsigned long long)sum.vertices);
-    assert_true(sum.vertices > 200 * (uint64_t)sum.compared);
+    print_message("# %u trees compared, %llu vertices\n", trees, (unsigned long long)vertices);
+    assert_true(vertices > 200 * (uint64_t)trees);
+    gpu_test_close(&device, &messages);
+}
+
+/* Trees of a few hard leaves, each of which always has the same operators, so that one code lists all such trees. */
+enum { LEAVES = 4 };
+
+static hewn_node grow_hard_leaf(grower *own, uint32_t grove, uint32_t which)
+{
+    uint64_t build = (grove * LEAVES + which) * 0x9e3779b97f4a7c15u + 1;
+    grower leaf = {own->field, &build, own->numbers};
+    hewn_node made = change(&leaf, grow_leaf(&leaf));
+    return choice(&leaf, 2) ? change(&leaf, made) : made;
+}
+
+static hewn_node grow_hard_tree(grower *own, uint32_t grove, uint32_t leaves)
+{
+    if (leaves <= 1)
+        return grow_hard_leaf(own, grove, choice(own, LEAVES));
+    uint32_t left = 1 + choice(own, leaves - 1);
+    hewn_node a = grow_hard_tree(own, grove, left);
+    return combine(own, a, grow_hard_tree(own, grove, leaves - left));
+}
+
+/* Whether a tree of all operators that the grove's trees have is not too much for a list. */
+static bool fits_lists(const hewn_field *field, hewn_node root)
+{
+    hewn_listing listing;
+    hewn_instructions made;
+    bool fits;
+    GPU_TEST_TRY(hewn_listing_create(&listing, field, root, false, &error));
+    GPU_TEST_TRY(hewn_instructions_create(&made, &listing, NULL, &fits, &error));
+    if (fits)
+        hewn_instructions_destroy(&made);
+    hewn_listing_destroy(&listing);
+    return fits;
+}
+
+static hewn_extractor *plant(hewn_device *device, uint32_t grove)
+{
+    const hewn_code_desc listed = {.evaluation = HEWN_EVALUATION_LISTED};
+    hewn_field *field;
+    hewn_extractor *out = NULL;
+    uint64_t streams[2] = {grove, 1};
+    GPU_TEST_TRY(hewn_field_create(&field, &error));
+    grower own = {field, &streams[0], &streams[1]};
+    hewn_node root = grow_hard_tree(&own, grove, 120);
+    if (fits_lists(field, root))
+        GPU_TEST_TRY(hewn_extractor_create_as(device, field, root, &listed, &out, &error));
+    hewn_field_destroy(&field);
+    return out;
+}
+
+static uint64_t check_listed(hewn_extractor *extractor, uint32_t grove, uint32_t tree, uint32_t *compared)
+{
+    uint64_t streams[2] = {grove * 0x9e3779b97f4a7c15u + tree, tree * 0xd1b54a32d192ed03u + grove}, vertices = 0;
+    hewn_field *field;
+    bool taken;
+    GPU_TEST_TRY(hewn_field_create(&field, &error));
+    grower own = {field, &streams[0], &streams[1]};
+    hewn_node root = grow_hard_tree(&own, grove, 1 + choice(&own, 12));
+    GPU_TEST_TRY(hewn_extractor_renumber(extractor, field, root, &taken, &error));
+    if (taken) {
+        vertices = check_cells(extractor, tree);
+        ++*compared;
+    }
+    hewn_field_destroy(&field);
+    return vertices;
+}
+
+/* From grove HEWN_SEED (1) on. Of a grove's trees some have lists of another form, when a number is zero or equals
+ * another one. */
+static void hard_trees_keep_their_cells_in_lists(void **state)
+{
+    (void)state;
+    unsigned messages;
+    hewn_device *device = gpu_test_open(&messages);
+    const char *from = getenv("HEWN_SEED");
+    uint32_t grove = from ? (uint32_t)strtoul(from, NULL, 10) : 1;
+    const uint32_t wanted = gpu_test_long() ? 10000 : 10, each = gpu_test_long() ? 400 : 16;
+    uint32_t compared = 0;
+    uint64_t vertices = 0;
+    for (; compared < wanted; grove++) {
+        hewn_extractor *extractor = plant(device, grove);
+        for (uint32_t tree = 1; extractor && tree <= each && compared < wanted; tree++)
+            vertices += check_listed(extractor, grove, tree, &compared);
+        hewn_extractor_destroy(&extractor);
+        if (gpu_test_long())
+            print_message("# %u trees so far, up to grove %u\n", compared, grove);
+    }
+    print_message("# %u trees compared, %llu vertices\n", compared, (unsigned long long)vertices);
+    assert_true(vertices > 100 * (uint64_t)compared);
     gpu_test_close(&device, &messages);
 }
 
@@ -254,6 +332,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hard_trees_keep_their_cells),
+        cmocka_unit_test(hard_trees_keep_their_cells_in_lists),
         cmocka_unit_test(outlines_are_the_same_by_tables),
     };
     return cmocka_run_group_tests_name("hard_trees", tests, NULL, NULL);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <omp.h>
 
+#include "base/order.h"
 #include "hewn/check.h"
 #include "hewn/labels.h"
 #include "test_model_support.h"
@@ -542,12 +543,6 @@ static hewn_volume make_quartered_ball(uint32_t n)
     return volume;
 }
 
-static int by_number(const void *a, const void *b)
-{
-    const uint64_t left = *(const uint64_t *)a, right = *(const uint64_t *)b;
-    return (left > right) - (left < right);
-}
-
 /* Vertices at the ends of edges that have not two triangles. */
 static uint64_t count_curve_vertices(const hewn_label_mesh *mesh)
 {
@@ -559,7 +554,7 @@ static uint64_t count_curve_vertices(const hewn_label_mesh *mesh)
         const uint64_t a = mesh->indices[c], b = mesh->indices[c % 3 == 2 ? c - 2 : c + 1];
         edges[c] = a < b ? a << 32 | b : b << 32 | a;
     }
-    qsort(edges, count, sizeof *edges, by_number);
+    qsort(edges, count, sizeof *edges, hewn_order_uint64);
     for (uint64_t i = 0, end; i < count; i = end) {
         for (end = i + 1; end < count && edges[end] == edges[i];)
             end++;

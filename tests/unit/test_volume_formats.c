@@ -3,7 +3,6 @@
 #include <bzlib.h>
 #include <zlib.h>
 
-#include "io/shim/module.h"
 #include "volume_files.h"
 
 /* A file in a folder of its own, read, and taken away again. */
@@ -454,8 +453,6 @@ static void test_dicom_damaged(void **state)
     static const hewn_volume_read_desc desc = {.memory_limit = 1 << 24};
     hewn_text text = {0};
     int refused = 0, fatal = 0;
-    char message[256];
-    assert_non_null(hewn_module_load("hewn_dicom", message, sizeof message)); /* once, not in each of the processes */
     put_dicom_slice(&text, &known, 0, "1.2.9", 2);
     for (size_t at = 140; at < text.length - TRUTH_X * TRUTH_Y * 2; at += 3) {
         text.bytes[at] ^= 0x40;

@@ -252,11 +252,32 @@ static void test_far_apart(void **state)
     assert_int_equal(rmdir(folder), 0);
 }
 
+/* Reading is not disturbed by other threads that use TBB, as OpenVDB does, at the same time: they hold locks. */
+static void test_beside_others(void **state)
+{
+    (void)state;
+    static const double centre[1][3] = {{0, 0, 0}};
+    char folder[64], path[96];
+    make_folder(folder);
+    snprintf(path, sizeof path, "%s/a.vdb", folder);
+    vdb_write_spheres(path, 1, centre, 12, false);
+    vdb_write_busy(true);
+    for (int n = 0; n < 6; n++) {
+        const hewn_volume_read_desc desc = {.blocks = n % 2 == 0};
+        hewn_volume volume = read_volume(path, &desc);
+        assert_true(volume.level_set);
+        hewn_volume_destroy(&volume);
+    }
+    vdb_write_busy(false);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(rmdir(folder), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_far_apart),    cmocka_unit_test(test_data),      cmocka_unit_test(test_types),
-        cmocka_unit_test(test_random_trees), cmocka_unit_test(test_misplaced),
+        cmocka_unit_test(test_random_trees), cmocka_unit_test(test_misplaced), cmocka_unit_test(test_beside_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,7 +5,11 @@
 #include <openvdb/tools/Composite.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <atomic>
 #include <random>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <thread>
 
 namespace
 {
@@ -134,4 +138,20 @@ void vdb_write_mask(const char *path, const int32_t active[3], const int32_t pas
     file.setCompression(openvdb::io::COMPRESS_NONE);
     file.write({grid});
     file.close();
+}
+
+void vdb_write_busy(bool on)
+{
+    static std::atomic<bool> busy;
+    static std::thread thread;
+    busy = on;
+    if (!on)
+        return thread.join();
+    thread = std::thread([] {
+        std::atomic<int> sum{0};
+        while (busy) { /* arenas come and go under the locks that all of TBB shares */
+            tbb::task_arena arena(2);
+            arena.execute([&sum] { tbb::parallel_for(0, 64, [&sum](int n) { sum += n; }); });
+        }
+    });
 }

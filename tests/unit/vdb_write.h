@@ -28,6 +28,9 @@ void vdb_write_tree(const char *path, uint64_t seed, bool doubles);
  * one that is the same but not active, and a tile of 4096 that is true and not active. */
 void vdb_write_mask(const char *path, const int32_t active[3], const int32_t passive[3], const int32_t tile[3]);
 
+/* Starts and stops a thread that gives TBB, which OpenVDB uses, small pieces of work all the time. */
+void vdb_write_busy(bool on);
+
 #ifdef __cplusplus
 }
 #endif

@@ -25,10 +25,16 @@ static bool runs_from_build(void)
            (dladdr(&here, &library) && library.dli_fname && is_in_build(library.dli_fname));
 }
 
+void hewn_module_path(const char *file, char *path, size_t room)
+{
+    snprintf(path, room, "%s/%s", runs_from_build() ? HEWN_BUILD_FOLDER "/src/io" : HEWN_MODULE_FOLDER, file);
+}
+
 const void *hewn_module_load(const char *name, char *message, size_t room)
 {
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s.so", runs_from_build() ? HEWN_BUILD_FOLDER "/src/io" : HEWN_MODULE_FOLDER, name);
+    char file[64], path[4096];
+    snprintf(file, sizeof file, "%s.so", name);
+    hewn_module_path(file, path, sizeof path);
     void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE); /* the same one each time */
     const void *table = module ? dlsym(module, HEWN_MODULE_TABLE) : NULL;
     const char *reason = table ? NULL : dlerror();

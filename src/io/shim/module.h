@@ -8,8 +8,11 @@
 /* Under this name a module has its table of functions. */
 #define HEWN_MODULE_TABLE "hewn_module_table"
 
-/* The table of functions of a module ("hewn_vdb"): of the build folder where this code runs
- * from there, else from where Hewn is installed. It stays loaded. NULL where it cannot be, with a message of at most
+/* The path of a file that lies where modules do ("hewn_vdb.so"): in the build folder where this code runs from there,
+ * else where Hewn is installed. */
+void hewn_module_path(const char *file, char *path, size_t room);
+
+/* The table of functions of a module ("hewn_vdb"). It stays loaded. NULL where it cannot be, with a message of at most
  * `room` bytes. Safe from several threads at once. */
 const void *hewn_module_load(const char *name, char *message, size_t room);
 

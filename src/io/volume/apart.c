@@ -4,137 +4,105 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <spawn.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/pidfd.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "base/file.h"
 #include "base/progress.h"
+#include "io/shim/module.h"
 
-/* What is sent back; samples follow it. Pointers of the other process to static tables hold here too, because it is a
- * copy of this one; others are sent as text. */
-typedef struct reply {
-    hewn_result result;
-    hewn_error error;
-    hewn_volume volume;
-    uint64_t sample_bytes;
-    char name[256], remark[256];
-} reply;
+/* --- the other process -------------------------------------------------------------------------------------------- */
 
-/* Where samples begin. */
-enum { SAMPLES_AT = HEWN_VOLUME_ROOM_AT };
-_Static_assert(sizeof(reply) <= SAMPLES_AT, "samples begin after the reply");
-
-static const uint64_t SPARE = (uint64_t)1 << 26; /* bytes for the library itself */
-
-/* --- in the other process ----------------------------------------------------------------------------------------- */
-
-static bool write_all(int file, const void *bytes, size_t length)
+/* A file in memory; never one of the first three, which the program gets for itself. */
+static int create_file(const char *name)
 {
-    for (const char *at = bytes; length > 0;) {
-        size_t part = length < (size_t)1 << 30 ? length : (size_t)1 << 30;
-        ssize_t put = write(file, at, part);
-        if (put < 0 && errno == EINTR)
-            continue;
-        if (put <= 0)
-            return false;
-        at += put;
-        length -= (size_t)put;
+    int made = memfd_create(name, MFD_CLOEXEC), file = made;
+    if (made >= 0 && made <= STDERR_FILENO) {
+        file = fcntl(made, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+        close(made);
     }
-    return true;
+    return file;
 }
 
-/* A number that lies may ask for all memory there is; then it gets none. The sanitizers need all addresses. */
-static void limit_memory(const hewn_apart *job)
+/* The bytes as a file that the program can map: the one they are mapped from, or a copy in memory. */
+static int open_input(const hewn_volume_source *source)
 {
-#if !defined(__SANITIZE_ADDRESS__)
-    const hewn_volume_source limits = {.desc = job->desc};
-    unsigned long pages = 0;
-    FILE *file = fopen("/proc/self/statm", "re");
-    bool known =
-        file && fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) == 1; /* data and stack, as RLIMIT_DATA counts */
-    if (file)
-        fclose(file);
-    uint64_t file_bytes = job->source ? job->source->length : 0; /* libraries copy it, more than once */
-    uint64_t most =
-        2 * hewn_volume_limit(&limits) + 4 * file_bytes + SPARE + (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
-    const struct rlimit limit = {most, most};
-    if (known)
-        setrlimit(RLIMIT_DATA, &limit);
-#else
-    (void)job;
-#endif
-}
-
-/* Nor may it work for ever. Of a folder nobody knows how much there is. */
-static void limit_time(const hewn_apart *job)
-{
-    uint64_t seconds = 60 + (job->source ? job->source->length : 0) / (1 << 18);
-    const struct rlimit limit = {seconds, seconds};
-    if (job->source)
-        setrlimit(RLIMIT_CPU, &limit); /* of this process, from its start */
-}
-
-static void copy_text(char out[256], const char *text)
-{
-    snprintf(out, 256, "%s", text ? text : "");
-}
-
-static uint64_t bytes_of(const hewn_volume *volume)
-{
-    if (volume->blocks)
-        return volume->memory_length;
-    return hewn_volume_frame_size(volume) * volume->frame_count * hewn_voxel_size(volume->type);
-}
-
-/* Sends the reply, and the samples unless the reader wrote them into the shared file itself. */
-static bool send(const hewn_apart *job, int file, const reply *answer)
-{
-    char page[SAMPLES_AT] = {0};
-    memcpy(page, answer, sizeof *answer);
-    if (job->source && answer->result == HEWN_OK && answer->volume.mapped &&
-        (answer->volume.blocks || answer->volume.samples == answer->volume.memory) &&
-        answer->volume.memory_length == answer->sample_bytes)
-        return pwrite(file, page, sizeof page, 0) == (ssize_t)sizeof page;
-    return ftruncate(file, 0) == 0 && write_all(file, page, sizeof page) &&
-           write_all(file, answer->volume.blocks ? answer->volume.memory : answer->volume.samples,
-                     answer->sample_bytes);
-}
-
-static bool work(const hewn_apart *job, int file)
-{
-    static const int fatal[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGINT, SIGTERM, SIGHUP};
-    const struct rlimit no_core = {0, 0};
-    hewn_volume_read_desc desc = *job->desc;
-    reply answer = {.result = HEWN_OK};
-    int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (nowhere >= 0)
-        dup2(nowhere, STDERR_FILENO); /* where libraries say why they give up */
-    for (size_t i = 0; i < sizeof fatal / sizeof *fatal; i++)
-        signal(fatal[i], SIG_DFL);
-    setrlimit(RLIMIT_CORE, &no_core);
-    limit_memory(job);
-    limit_time(job);
-    desc.progress = NULL;
-    if (job->source) {
-        job->source->desc = &desc;
-        job->source->room_file = file;
+    if (source->mapped_file > 0)
+        return fcntl(source->mapped_file, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    int file = create_file("hewn volume file");
+    if (file >= 0 && !hewn_file_put(file, source->bytes, source->length)) {
+        close(file);
+        return -1;
     }
-    answer.result = job->read(job, &desc, &answer.volume, &answer.error);
-    if (answer.result == HEWN_OK)
-        answer.sample_bytes = bytes_of(&answer.volume);
-    copy_text(answer.name, answer.volume.name);
-    copy_text(answer.remark, answer.volume.remark);
-    return send(job, file, &answer);
+    return file;
 }
 
-/* --- in this one -------------------------------------------------------------------------------------------------- */
+/* Signals are as they are at a program's start, and libraries' complaints go nowhere. */
+static int spawn(const char *program, char *const arguments[], int input, int reply, pid_t *child)
+{
+    posix_spawn_file_actions_t files;
+    posix_spawnattr_t attributes;
+    sigset_t all, none;
+    sigfillset(&all);
+    sigemptyset(&none);
+    int failed = posix_spawn_file_actions_init(&files);
+    if (failed)
+        return failed;
+    failed = posix_spawnattr_init(&attributes);
+    if (failed) {
+        posix_spawn_file_actions_destroy(&files);
+        return failed;
+    }
+    posix_spawnattr_setsigdefault(&attributes, &all);
+    posix_spawnattr_setsigmask(&attributes, &none);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+    for (int standard = 0; standard < 3 && !failed; standard++)
+        failed = posix_spawn_file_actions_addopen(&files, standard, "/dev/null", O_RDWR, 0);
+    if (!failed && input >= 0) /* onto itself: it stays open in the program */
+        failed = posix_spawn_file_actions_adddup2(&files, input, input);
+    if (!failed)
+        failed = posix_spawn_file_actions_adddup2(&files, reply, reply);
+    if (!failed)
+        failed = posix_spawn(child, program, &files, &attributes, arguments, environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&files);
+    return failed;
+}
+
+static hewn_result start(const hewn_apart *job, int input, int reply, pid_t *child, hewn_error *error)
+{
+    char program[4096], numbers[HEWN_APART_ARGUMENTS][24];
+    char *arguments[HEWN_APART_ARGUMENTS + 1] = {0};
+    hewn_module_path(HEWN_APART_PROGRAM, program, sizeof program);
+    const unsigned long long values[HEWN_APART_ARGUMENTS] = {[HEWN_APART_READER] = job->reader,
+                                                             [HEWN_APART_LIMIT] = job->desc->memory_limit,
+                                                             [HEWN_APART_BLOCKS] = job->desc->blocks,
+                                                             [HEWN_APART_REPLY] = (unsigned)reply,
+                                                             [HEWN_APART_INPUT] = (unsigned)(input + 1)};
+    for (int i = 0; i < HEWN_APART_ARGUMENTS; i++) {
+        snprintf(numbers[i], sizeof numbers[i], "%llu", values[i]);
+        arguments[i] = numbers[i];
+    }
+    arguments[0] = program;
+    arguments[HEWN_APART_VERSION] = (char *)hewn_version(); /* programs take theirs as if they could be written */
+    arguments[HEWN_APART_NAME] = (char *)job->name;
+    arguments[HEWN_APART_CHOICE] = (char *)job->choice;
+    int failed = spawn(program, arguments, input, reply, child);
+    if (failed)
+        return hewn_fail_at(error, failed == ENOMEM || failed == EAGAIN ? HEWN_OUT_OF_MEMORY : HEWN_MISSING_FEATURE,
+                            job->name, 0, "what reads such files, %s, cannot be run: %s", program, strerror(failed));
+    return HEWN_OK;
+}
+
+/* --- this one ----------------------------------------------------------------------------------------------------- */
 
 /* Sleeps until the process ends, or it is time to report again. */
 static void wait_a_while(int handle, struct timespec *pause)
@@ -171,63 +139,76 @@ static hewn_result wait_for(const hewn_apart *job, pid_t child, int handle, int 
 
 static hewn_result take_reply(const hewn_apart *job, int file, hewn_volume *out, hewn_error *error)
 {
-    reply answer;
+    hewn_apart_reply answer;
     off_t length = lseek(file, 0, SEEK_END);
-    if (length < SAMPLES_AT || pread(file, &answer, sizeof answer, 0) != (ssize_t)sizeof answer)
+    if (length < HEWN_VOLUME_ROOM_AT || pread(file, &answer, sizeof answer, 0) != (ssize_t)sizeof answer)
         return hewn_fail_at(error, HEWN_IO, job->name, 0, "the process that reads it sent no reply");
     if (answer.result != HEWN_OK) {
         if (error)
             *error = answer.error;
         return answer.result;
     }
-    if ((uint64_t)length - SAMPLES_AT != answer.sample_bytes)
+    if ((uint64_t)length - HEWN_VOLUME_ROOM_AT != answer.sample_bytes)
         return hewn_fail_at(error, HEWN_OUT_OF_MEMORY, job->name, 0, "out of memory for %llu bytes of samples",
                             (unsigned long long)answer.sample_bytes);
-    void *block = mmap(NULL, (size_t)length, PROT_READ, MAP_PRIVATE, file, 0);
+    char *block = mmap(NULL, (size_t)length, PROT_READ, MAP_PRIVATE, file, 0);
     if (block == MAP_FAILED)
         return hewn_fail_at(error, HEWN_OUT_OF_MEMORY, job->name, 0, "out of memory for the samples");
     *out = answer.volume;
     out->name = answer.name[0] ? hewn_strdup(answer.name) : NULL;
     out->remark = answer.remark[0] ? hewn_strdup(answer.remark) : NULL;
+    out->unit = answer.unit[0] ? hewn_unit_find(answer.unit) : NULL;
     out->memory = block;
     out->memory_length = (size_t)length;
     out->mapped = true;
-    out->samples = out->blocks ? NULL : (const char *)block + SAMPLES_AT;
-    out->blocks = out->blocks ? (const void *)((const char *)block + SAMPLES_AT) : NULL;
+    out->samples = answer.blocks ? NULL : block + HEWN_VOLUME_ROOM_AT;
+    out->blocks = answer.blocks ? (const void *)(block + HEWN_VOLUME_ROOM_AT) : NULL;
     return HEWN_OK;
 }
 
-static hewn_result run(const hewn_apart *job, int file, hewn_volume *out, hewn_error *error)
+/* Whether it came to its end. */
+static hewn_result judge(const hewn_apart *job, int status, hewn_error *error)
 {
-    int status = 0;
-    pid_t child = fork();
-    if (child < 0)
-        return hewn_fail_at(error, HEWN_IO, job->name, 0, "no process can be made to read it");
-    if (child == 0)
-        _exit(work(job, file) ? 0 : 1);
-    int handle = pidfd_open(child, 0);
-    hewn_result waited = wait_for(job, child, handle, &status, error);
-    if (handle >= 0)
-        close(handle);
-    HEWN_TRY(waited);
     if (!WIFEXITED(status))
         return hewn_fail_at(
             error, HEWN_BAD_INPUT, job->name, 0,
             "it is damaged in a way that the library which reads such files does not survive (signal %d)",
             WIFSIGNALED(status) ? WTERMSIG(status) : 0);
+    if (WEXITSTATUS(status) == HEWN_APART_OTHER_VERSION)
+        return hewn_fail_at(error, HEWN_MISSING_FEATURE, job->name, 0,
+                            "the program " HEWN_APART_PROGRAM ", which reads such files, is of another version");
     if (WEXITSTATUS(status) != 0)
         return hewn_fail_at(error, HEWN_BAD_INPUT, job->name, 0, "the process that reads it failed (exit code %d)",
                             WEXITSTATUS(status));
-    return take_reply(job, file, out, error);
+    return HEWN_OK;
+}
+
+static hewn_result run(const hewn_apart *job, int input, int reply, hewn_volume *out, hewn_error *error)
+{
+    int status = 0;
+    pid_t child;
+    HEWN_TRY(start(job, input, reply, &child, error));
+    int handle = pidfd_open(child, 0);
+    hewn_result result = wait_for(job, child, handle, &status, error);
+    if (handle >= 0)
+        close(handle);
+    if (result == HEWN_OK)
+        result = judge(job, status, error);
+    return result == HEWN_OK ? take_reply(job, reply, out, error) : result;
 }
 
 hewn_result hewn_volume_read_apart(const hewn_apart *job, hewn_volume *out, hewn_error *error)
 {
+    hewn_result result;
     *out = (hewn_volume){0};
-    int file = memfd_create("hewn volume", MFD_CLOEXEC);
-    if (file < 0)
-        return hewn_fail_at(error, HEWN_OUT_OF_MEMORY, job->name, 0, "out of memory for the samples");
-    hewn_result result = run(job, file, out, error);
-    close(file);
+    int reply = create_file("hewn volume"), input = job->source ? open_input(job->source) : -1;
+    if (reply < 0 || (job->source && input < 0))
+        result = hewn_fail_at(error, HEWN_OUT_OF_MEMORY, job->name, 0, "out of memory for the samples");
+    else
+        result = run(job, input, reply, out, error);
+    if (input >= 0)
+        close(input);
+    if (reply >= 0)
+        close(reply);
     return result;
 }

@@ -90,7 +90,7 @@ static hewn_result read_one(const hewn_volume_source *source, const hewn_dicom_m
     return result == HEWN_DICOM_OK ? HEWN_OK : failure_of(result, source->name, message, error);
 }
 
-static hewn_result read_file(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
+hewn_result hewn_dicom_read_here(const hewn_volume_source *source, hewn_volume *out, hewn_error *error)
 {
     hewn_dicom *file;
     hewn_dicom_facts facts;
@@ -391,7 +391,7 @@ static hewn_result read_series(series *all, hewn_volume *volume, hewn_error *err
         hewn_volume_source source;
         HEWN_TRY(hewn_volume_source_open(all->slices[0].path, all->desc, &source, error));
         hewn_volume_destroy(volume);
-        hewn_result result = read_file(&source, volume, error);
+        hewn_result result = hewn_dicom_read_here(&source, volume, error);
         hewn_volume_source_close(&source);
         return result;
     }
@@ -403,7 +403,8 @@ static hewn_result read_series(series *all, hewn_volume *volume, hewn_error *err
     return stack(all, step, volume, error);
 }
 
-static hewn_result read_folder(const char *path, const hewn_volume_read_desc *desc, hewn_volume *out, hewn_error *error)
+hewn_result hewn_dicom_read_folder_here(const char *path, const hewn_volume_read_desc *desc, hewn_volume *out,
+                                        hewn_error *error)
 {
     series all = {.folder = path, .desc = desc};
     hewn_volume volume = hewn_volume_blank();
@@ -426,21 +427,19 @@ static hewn_result read_folder(const char *path, const hewn_volume_read_desc *de
 
 /* --- apart -------------------------------------------------------------------------------------------------------- */
 
-static hewn_result read_apart(const hewn_apart *job, const hewn_volume_read_desc *desc, hewn_volume *out,
-                              hewn_error *error)
-{
-    return job->source ? read_file(job->source, out, error) : read_folder(job->path, desc, out, error);
-}
-
 hewn_result hewn_dicom_read(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
 {
-    const hewn_apart job = {.read = read_apart, .source = source, .name = source->name, .desc = source->desc};
+    const hewn_apart job = {.reader = HEWN_APART_DICOM,
+                            .source = source,
+                            .name = source->name,
+                            .desc = source->desc,
+                            .choice = source->desc->series};
     return hewn_volume_read_apart(&job, out, error);
 }
 
 hewn_result hewn_dicom_read_folder(const char *path, const hewn_volume_read_desc *desc, hewn_volume *out,
                                    hewn_error *error)
 {
-    const hewn_apart job = {.read = read_apart, .path = path, .name = path, .desc = desc};
+    const hewn_apart job = {.reader = HEWN_APART_DICOM_FOLDER, .name = path, .desc = desc, .choice = desc->series};
     return hewn_volume_read_apart(&job, out, error);
 }

@@ -29,26 +29,31 @@ static bool map(const char *path, hewn_volume_source *out)
         return false;
     bool large = fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_size >= LEAST_MAPPED;
     void *block = large ? mmap(NULL, (size_t)status.st_size, PROT_READ, MAP_PRIVATE, file, 0) : MAP_FAILED;
-    close(file);
-    if (block == MAP_FAILED)
+    if (block == MAP_FAILED) {
+        close(file);
         return false;
+    }
     out->memory = block;
     out->memory_length = (size_t)status.st_size;
     out->mapped = true;
+    out->mapped_file = file;
     return true;
 }
 
-static void free_block(char *memory, size_t length, bool mapped)
+static void free_block(hewn_volume_source *source)
 {
-    if (mapped && memory)
-        munmap(memory, length);
+    if (source->mapped && source->memory)
+        munmap(source->memory, source->memory_length);
     else
-        hewn_free(memory);
+        hewn_free(source->memory);
+    if (source->mapped_file > 0)
+        close(source->mapped_file);
+    source->mapped_file = 0;
 }
 
 void hewn_volume_source_close(hewn_volume_source *source)
 {
-    free_block(source->memory, source->memory_length, source->mapped);
+    free_block(source);
     *source = (hewn_volume_source){0};
 }
 
@@ -60,7 +65,7 @@ static hewn_result unpack(hewn_volume_source *source, hewn_error *error)
         return HEWN_OK;
     HEWN_TRY(hewn_unpack(source->memory, source->memory_length, hewn_volume_limit(source), source->name,
                          source->desc->progress, &unpacked, &length, error));
-    free_block(source->memory, source->memory_length, source->mapped);
+    free_block(source);
     source->memory = unpacked;
     source->memory_length = length;
     source->mapped = false;

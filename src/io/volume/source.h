@@ -16,8 +16,9 @@ typedef struct hewn_volume_source {
     char *memory;
     size_t memory_length;
     bool mapped;
-    int room_file; /* above 0: samples get their room in this file, mapped from HEWN_VOLUME_ROOM_AT on, not on the heap
-                    */
+    int mapped_file; /* above 0: the bytes are those of this open file */
+    int room_file;   /* above 0: samples get their room in this file, mapped from HEWN_VOLUME_ROOM_AT on, not on the
+                        heap */
 } hewn_volume_source;
 
 /* A page in, so that samples are aligned and what is before them is mapped apart. */

@@ -118,7 +118,7 @@ static hewn_result read_grid(const hewn_volume_source *source, const hewn_vdb_mo
     return fill_box(source, module, grid, facts, lo, hi, volume, error);
 }
 
-static hewn_result read_here(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
+hewn_result hewn_vdb_read_here(const hewn_volume_source *source, hewn_volume *out, hewn_error *error)
 {
     hewn_vdb *grid;
     hewn_vdb_facts facts;
@@ -144,15 +144,12 @@ static hewn_result read_here(hewn_volume_source *source, hewn_volume *out, hewn_
     return HEWN_OK;
 }
 
-static hewn_result read_apart(const hewn_apart *job, const hewn_volume_read_desc *desc, hewn_volume *out,
-                              hewn_error *error)
-{
-    (void)desc; /* the source has it */
-    return read_here(job->source, out, error);
-}
-
 hewn_result hewn_vdb_read(hewn_volume_source *source, hewn_volume *out, hewn_error *error)
 {
-    const hewn_apart job = {.read = read_apart, .source = source, .name = source->name, .desc = source->desc};
+    const hewn_apart job = {.reader = HEWN_APART_VDB,
+                            .source = source,
+                            .name = source->name,
+                            .desc = source->desc,
+                            .choice = source->desc->grid};
     return hewn_volume_read_apart(&job, out, error);
 }
