@@ -59,22 +59,30 @@ vec4 values_at(vec3 at[4])
 
 Search searches[4];
 
-void solve(vec4 at_start, vec4 at_end, uint count)
+/* The values at both ends and then the search, in one loop so that the kernel has the field once: compilers copy what is
+ * called to each place. */
+void solve(const vec3 starts[4], const vec3 ends[4], uint count, out vec4 at_start, out vec4 at_end)
 {
-    for (uint k = 0u; k < 4u; k++)
-        searches[k] = search_begin(edges[k].start[edges[k].axis], edges[k].end, at_start[k], at_end[k],
-                                   k >= count);
     bool settled = false;
-    for (uint trial = 0u; trial < MOST_TRIALS && !everybody(settled); trial++) {
+    at_start = at_end = vec4(0.0);
+    for (uint ask = 0u; ask < 2u + MOST_TRIALS && !everybody(settled); ask++) {
         vec3 at[4];
         for (uint k = 0u; k < 4u; k++) {
-            next_guess(searches[k], trial);
-            at[k] = point_along(edges[k], searches[k].guess);
+            if (ask >= 2u)
+                next_guess(searches[k], ask - 2u);
+            vec3 place = point_along(edges[k], searches[k].guess);
+            at[k] = ask == 0u ? starts[k] : ask == 1u ? ends[k] : place;
         }
         vec4 values = values_at(at);
-        settled = true;
+        at_start = ask == 0u ? values : at_start;
+        at_end = ask == 1u ? values : at_end;
+        settled = ask >= 2u;
         for (uint k = 0u; k < 4u; k++) {
-            take_value(searches[k], values[k]);
+            if (ask >= 2u)
+                take_value(searches[k], values[k]);
+            else
+                searches[k] = search_begin(edges[k].start[edges[k].axis], edges[k].end, at_start[k], at_end[k],
+                                           k >= count);
             settled = settled && searches[k].settled;
         }
     }
@@ -134,8 +142,8 @@ void solve_four(uint first, uint end, uvec3 base)
         ends[k][edges[k].axis] = edges[k].end;
     }
     narrow(starts, ends, first < end ? min(end - first, 4u) : 0u);
-    vec4 at_start = values_at(starts), at_end = values_at(ends);
-    solve(at_start, at_end, first < end ? end - first : 0u);
+    vec4 at_start, at_end;
+    solve(starts, ends, first < end ? end - first : 0u, at_start, at_end);
     float least = push.dual != 0u ? 0.0 : NEAREST;
     for (uint k = 0u; k < 4u; k++)
         found[k] = point_along(edges[k], clamp(searches[k].guess, least, 1.0 - least));

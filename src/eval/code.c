@@ -464,8 +464,11 @@ hewn_result hewn_code_program(hewn_device *device, const hewn_code *code, const 
     write_kernel(code, desc, &text);
     hewn_result result = hewn_text_status(&text, error);
     if (result == HEWN_OK) {
-        const hewn_program_desc program = {
-            .name = desc->name, .glsl = text.bytes, .push_bytes = desc->push_bytes, .uniforms = true};
+        const hewn_program_desc program = {.name = desc->name,
+                                           .glsl = text.bytes,
+                                           .push_bytes = desc->push_bytes,
+                                           .uniforms = true,
+                                           .soon = desc->soon};
         result = hewn_program_create(device, &program, out, error);
     }
     hewn_text_clear(&text);

@@ -63,6 +63,7 @@ typedef struct hewn_kernel_desc {
     const char *body;
     uint32_t flavours; /* of hewn_flavour */
     uint32_t push_bytes;
+    bool soon; /* as in hewn_program_desc */
 } hewn_kernel_desc;
 
 hewn_result hewn_code_program(hewn_device *device, const hewn_code *code, const hewn_kernel_desc *desc,

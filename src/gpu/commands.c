@@ -6,6 +6,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "gpu/ahead.h"
 #include "gpu/device.h"
 
 enum { SETS_A_POOL = 64 };
@@ -71,6 +72,7 @@ hewn_result hewn_commands_begin(hewn_device *device, hewn_commands **out, hewn_e
     hewn_commands *commands = &device->commands;
     if (commands->open)
         return hewn_fail(error, HEWN_INTERNAL, "a recording is open on the device already");
+    HEWN_TRY(hewn_ahead_finish(device, error));
     HEWN_TRY(hewn_vulkan_check(device->vk.ResetCommandPool(device->handle, commands->pool, 0),
                                "emptying the command pool", error));
     const VkCommandBufferBeginInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,

@@ -7,6 +7,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "gpu/ahead.h"
 
 hewn_result hewn_device_list(hewn_device_info **infos, size_t *count, hewn_error *error)
 {
@@ -105,8 +106,10 @@ static void find_queue(hewn_device *device)
 static void read_limits(hewn_device *device)
 {
     VkPhysicalDeviceIDProperties id = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES};
+    VkPhysicalDeviceDriverProperties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
+                                               .pNext = &id};
     VkPhysicalDeviceSubgroupProperties subgroup = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
-                                                   .pNext = &id};
+                                                   .pNext = &driver};
     VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &subgroup};
     device->instance.vk.GetPhysicalDeviceProperties2(device->physical, &all);
     const VkPhysicalDeviceLimits *limits = &all.properties.limits;
@@ -115,6 +118,7 @@ static void read_limits(hewn_device *device)
     const VkSubgroupFeatureFlags wanted = VK_SUBGROUP_FEATURE_VOTE_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
     if ((subgroup.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) && (subgroup.supportedOperations & wanted) == wanted)
         device->subgroup_size = subgroup.subgroupSize;
+    device->compiles_late = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
     device->timestamp_seconds = (double)limits->timestampPeriod * 1e-9;
     device->instance.vk.GetPhysicalDeviceMemoryProperties(device->physical, &device->memory);
     hewn_hash key = hewn_hash_begin();
@@ -163,6 +167,26 @@ static hewn_result create_handle(hewn_device *device, hewn_error *error)
     device->opened = true;
     device->vk.GetDeviceQueue(device->handle, device->queue_family, 0, &device->queue);
     return HEWN_OK;
+}
+
+hewn_result hewn_device_open_second(const hewn_device *device, hewn_device *out, hewn_error *error)
+{
+    *out = (hewn_device){.instance = device->instance,
+                         .info = device->info,
+                         .physical = device->physical,
+                         .queue_family = device->queue_family,
+                         .max_uniform_range = device->max_uniform_range,
+                         .memory = device->memory};
+    HEWN_TRY(create_handle(out, error));
+    return hewn_programs_describe(out, error);
+}
+
+void hewn_device_close_second(hewn_device *second)
+{
+    if (second->uniform_layout)
+        second->vk.DestroyDescriptorSetLayout(second->handle, second->uniform_layout, NULL);
+    if (second->handle && second->vk.DestroyDevice)
+        second->vk.DestroyDevice(second->handle, NULL);
 }
 
 static hewn_result open_physical(hewn_device *device, const char *choice, hewn_error *error)
@@ -219,6 +243,7 @@ void hewn_device_destroy(hewn_device **device_pointer)
         return;
     if (device->opened) {
         device->vk.DeviceWaitIdle(device->handle);
+        hewn_ahead_stop(device);
         hewn_commands_teardown(device);
         hewn_programs_teardown(device);
     }

@@ -17,6 +17,8 @@ typedef struct hewn_uniform_set {
     VkBuffer buffer; /* what it points to in the present recording */
 } hewn_uniform_set;
 
+typedef struct hewn_ahead hewn_ahead;
+
 struct hewn_commands {
     hewn_device *device;
     VkCommandPool pool;
@@ -56,6 +58,8 @@ struct hewn_device {
     hewn_hash pipeline_key;
     VkPipelineCacheHeaderVersionOne pipeline_header; /* how the driver's data must begin */
     hewn_cache cache;
+    bool compiles_late; /* the driver writes machine code when work first arrives, see ahead.h */
+    hewn_ahead *ahead;  /* NULL where no program waits for code */
     uint64_t bytes, peak_bytes;
     uint64_t most_bytes;    /* no more may be in use; 0: no limit */
     uint64_t refused_bytes; /* what the last buffer would have brought it to that was refused for that; 0: none was */
@@ -75,6 +79,20 @@ struct hewn_program {
     uint32_t push_bytes;
     bool uniforms;
 };
+
+/* A program's layout and pipeline, into a struct whose other members are set; after a failure too it is to be unmade.
+ * These two take nothing from Hewn's heap. */
+hewn_result hewn_program_make(hewn_device *device, const char *name, hewn_program *program, const uint32_t *words,
+                              size_t bytes, hewn_error *error);
+void hewn_program_unmake(hewn_device *device, hewn_program *program);
+
+/* A second Vulkan device on the same instance with what it takes to make programs, and nothing else: no caches, no
+ * recording. After a failure too it is to be closed. Another thread may do this, and use it. */
+hewn_result hewn_device_open_second(const hewn_device *device, hewn_device *out, hewn_error *error);
+void hewn_device_close_second(hewn_device *second);
+
+/* The one descriptor layout. */
+hewn_result hewn_programs_describe(hewn_device *device, hewn_error *error);
 
 /* The parts that program.c owns: the descriptor layout and the pipeline cache (saved when it grew). */
 hewn_result hewn_programs_setup(hewn_device *device, hewn_error *error);

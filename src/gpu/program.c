@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "gpu/ahead.h"
 #include "gpu/compiler.h"
 #include "gpu/device.h"
 
@@ -43,7 +44,7 @@ static hewn_result create_pipeline_cache(hewn_device *device, hewn_error *error)
     return HEWN_OK;
 }
 
-hewn_result hewn_programs_setup(hewn_device *device, hewn_error *error)
+hewn_result hewn_programs_describe(hewn_device *device, hewn_error *error)
 {
     const VkDescriptorSetLayoutBinding binding = {.binding = 0,
                                                   .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
@@ -51,9 +52,14 @@ hewn_result hewn_programs_setup(hewn_device *device, hewn_error *error)
                                                   .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT};
     const VkDescriptorSetLayoutCreateInfo layout = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, .bindingCount = 1, .pBindings = &binding};
-    HEWN_TRY(
-        hewn_vulkan_check(device->vk.CreateDescriptorSetLayout(device->handle, &layout, NULL, &device->uniform_layout),
-                          "describing uniforms", error));
+    return hewn_vulkan_check(
+        device->vk.CreateDescriptorSetLayout(device->handle, &layout, NULL, &device->uniform_layout),
+        "describing uniforms", error);
+}
+
+hewn_result hewn_programs_setup(hewn_device *device, hewn_error *error)
+{
+    HEWN_TRY(hewn_programs_describe(device, error));
     return create_pipeline_cache(device, error);
 }
 
@@ -130,6 +136,21 @@ static hewn_result create_pipeline(hewn_device *device, const char *name, hewn_p
     return hewn_vulkan_check(result, doing, error);
 }
 
+hewn_result hewn_program_make(hewn_device *device, const char *name, hewn_program *program, const uint32_t *words,
+                              size_t bytes, hewn_error *error)
+{
+    HEWN_TRY(create_layout(device, program, error));
+    return create_pipeline(device, name, program, words, bytes, error);
+}
+
+void hewn_program_unmake(hewn_device *device, hewn_program *program)
+{
+    if (program->pipeline)
+        device->vk.DestroyPipeline(device->handle, program->pipeline, NULL);
+    if (program->layout)
+        device->vk.DestroyPipelineLayout(device->handle, program->layout, NULL);
+}
+
 hewn_result hewn_program_create(hewn_device *device, const hewn_program_desc *desc, hewn_program **out,
                                 hewn_error *error)
 {
@@ -151,9 +172,9 @@ hewn_result hewn_program_create(hewn_device *device, const hewn_program_desc *de
     } else {
         program->push_bytes = desc->push_bytes;
         program->uniforms = desc->uniforms;
-        result = create_layout(device, program, error);
-        if (result == HEWN_OK)
-            result = create_pipeline(device, desc->name, program, words, bytes, error);
+        result = hewn_program_make(device, desc->name, program, words, bytes, error);
+        if (result == HEWN_OK && desc->soon && hewn_ahead_pays(device))
+            result = hewn_ahead_add(device, program, words, bytes, error);
     }
     hewn_free(translated);
     if (result != HEWN_OK)
@@ -167,10 +188,8 @@ void hewn_program_destroy(hewn_device *device, hewn_program **program_pointer)
     hewn_program *program = *program_pointer;
     if (!program)
         return;
-    if (program->pipeline)
-        device->vk.DestroyPipeline(device->handle, program->pipeline, NULL);
-    if (program->layout)
-        device->vk.DestroyPipelineLayout(device->handle, program->layout, NULL);
+    hewn_ahead_forget(device, program);
+    hewn_program_unmake(device, program);
     hewn_free(program);
     *program_pointer = NULL;
 }

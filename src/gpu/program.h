@@ -13,6 +13,7 @@ typedef struct hewn_program_desc {
     const char *glsl; /* or this: the complete text of a compute shader (`#version` first); includes are not resolved */
     uint32_t push_bytes; /* size of the push constants, 0 to 128 */
     bool uniforms;       /* the shader reads a uniform buffer at set 0, binding 0 */
+    bool soon;           /* it is sure to be used soon: its machine code may be made before that */
 } hewn_program_desc;
 
 /* Compiles (glslang's C interface, Vulkan 1.2 rules, SPIR-V 1.5) and makes the pipeline. SPIR-V of GLSL is kept on disk

@@ -40,33 +40,33 @@ static level_plan make_plan(uint32_t count)
 }
 
 static hewn_result create_program(hewn_device *device, const char *name, const unsigned char *spirv, size_t bytes,
-                                  uint32_t push_bytes, hewn_program **out, hewn_error *error)
+                                  uint32_t push_bytes, bool soon, hewn_program **out, hewn_error *error)
 {
     /* The array is aligned for words where it is defined. */
     const hewn_program_desc desc = {
-        .name = name, .spirv = (const void *)spirv, .spirv_bytes = bytes, .push_bytes = push_bytes};
+        .name = name, .spirv = (const void *)spirv, .spirv_bytes = bytes, .push_bytes = push_bytes, .soon = soon};
     return hewn_program_create(device, &desc, out, error);
 }
 
-static hewn_result create_parts(hewn_device *device, hewn_scan *scan, hewn_error *error)
+static hewn_result create_parts(hewn_device *device, hewn_scan *scan, bool soon, hewn_error *error)
 {
     HEWN_TRY(create_program(device, "scan_reduce", hewn_shader_scan_reduce, hewn_shader_scan_reduce_size,
-                            sizeof(struct hewn_scan_push), &scan->reduce, error));
+                            sizeof(struct hewn_scan_push), soon, &scan->reduce, error));
     HEWN_TRY(create_program(device, "scan_apply", hewn_shader_scan_apply, hewn_shader_scan_apply_size,
-                            sizeof(struct hewn_scan_push), &scan->apply, error));
+                            sizeof(struct hewn_scan_push), soon, &scan->apply, error));
     HEWN_TRY(create_program(device, "scan_prepare", hewn_shader_scan_prepare, hewn_shader_scan_prepare_size,
-                            sizeof(struct hewn_scan_prepare_push), &scan->prepare, error));
+                            sizeof(struct hewn_scan_prepare_push), soon, &scan->prepare, error));
     return hewn_buffer_create(device, "the levels of a prefix sum", HEWN_SCAN_LEVELS * sizeof(struct hewn_scan_level),
                               HEWN_BUFFER_DEVICE, &scan->levels, error);
 }
 
-hewn_result hewn_scan_create(hewn_device *device, hewn_scan **out, hewn_error *error)
+hewn_result hewn_scan_create(hewn_device *device, bool soon, hewn_scan **out, hewn_error *error)
 {
     *out = NULL;
     hewn_scan *scan = hewn_alloc_zero(1, sizeof *scan);
     if (!scan)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory creating a prefix sum");
-    hewn_result result = create_parts(device, scan, error);
+    hewn_result result = create_parts(device, scan, soon, error);
     if (result != HEWN_OK)
         hewn_scan_destroy(device, &scan);
     *out = scan;

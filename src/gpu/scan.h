@@ -7,7 +7,7 @@
 typedef struct hewn_scan hewn_scan;
 
 /* The programs of a scan; one serves any number of recordings. */
-hewn_result hewn_scan_create(hewn_device *device, hewn_scan **out, hewn_error *error);
+hewn_result hewn_scan_create(hewn_device *device, bool soon, hewn_scan **out, hewn_error *error);
 void hewn_scan_destroy(hewn_device *device, hewn_scan **scan);
 
 /* Bytes of scratch that a scan of `count` needs (0 for none). */

@@ -32,12 +32,13 @@ static hewn_result create_table(hewn_extractor *extractor, hewn_error *error)
 static hewn_result create_fixed(hewn_extractor *extractor, hewn_error *error)
 {
     hewn_dual_programs *own = &extractor->dual;
+    const bool host = extractor->on_host;
     const hewn_fixed_kernel kernels[] = {
-        HEWN_FIXED_KERNEL(dual_link, dual_link_push, false, &own->link),
-        HEWN_FIXED_KERNEL(dual_classify, dual_classify_push, true, &own->classify),
-        HEWN_FIXED_KERNEL(dual_spread, dual_spread_push, true, &own->spread),
-        HEWN_FIXED_KERNEL(dual_quads, dual_quad_push, false, &own->quads),
-        HEWN_FIXED_KERNEL(dual_fans, dual_fan_push, false, &own->fans),
+        HEWN_FIXED_KERNEL(dual_link, dual_link_push, false, !host, &own->link),
+        HEWN_FIXED_KERNEL(dual_classify, dual_classify_push, true, !host, &own->classify),
+        HEWN_FIXED_KERNEL(dual_spread, dual_spread_push, true, !host, &own->spread),
+        HEWN_FIXED_KERNEL(dual_quads, dual_quad_push, false, !host, &own->quads),
+        HEWN_FIXED_KERNEL(dual_fans, dual_fan_push, false, true, &own->fans),
     };
     return hewn_fixed_kernels_create(extractor->device, kernels, sizeof kernels / sizeof *kernels, error);
 }
@@ -54,7 +55,8 @@ static hewn_result create_vertices(hewn_extractor *extractor, hewn_method method
     hewn_kernel_desc desc = {.head = hewn_text_iso_head,
                              .flavours =
                                  HEWN_FLAVOUR_GRADIENT | HEWN_FLAVOUR_TOGETHER | hewn_extractor_flavour(extractor),
-                             .push_bytes = sizeof(struct hewn_dual_vertex_push)};
+                             .push_bytes = sizeof(struct hewn_dual_vertex_push),
+                             .soon = true};
     if (extractor->on_host) {
         desc.name = "dual_asked";
         desc.body = hewn_text_dual_asked;

@@ -26,35 +26,39 @@ HEWN_SHADER(gather);
 static hewn_result create_field_programs(hewn_extractor *extractor, hewn_error *error)
 {
     enum { STRAIGHT = 1, LISTED = 2 };
+    const bool host = extractor->on_host;
     const int wanted = hewn_code_is_listed(extractor->code) ? LISTED : STRAIGHT;
+    /* Those of vertices first: their machine code takes longest. */
     const struct {
         hewn_kernel_desc desc;
         hewn_program **place;
         int made_for; /* straight code, lists or both */
     } kernels[] = {
-        {{"cull", hewn_text_iso_head, hewn_text_cull, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_cull_push)},
-         &extractor->cull,
-         STRAIGHT},
-        {{"choose", hewn_text_iso_head, hewn_text_choose, HEWN_FLAVOUR_CHOICES | HEWN_FLAVOUR_TOGETHER,
-          sizeof(struct hewn_choose_push)},
-         &extractor->choose,
-         LISTED},
-        {{"keep_lists", hewn_text_iso_head, hewn_text_keep_lists, HEWN_FLAVOUR_CHOICES, sizeof(struct hewn_keep_push)},
-         &extractor->keep_lists,
-         LISTED},
-        {{"signs", hewn_text_iso_head, hewn_text_signs, HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_TOGETHER,
-          sizeof(struct hewn_sign_push)},
-         &extractor->signs,
-         STRAIGHT | LISTED},
-        {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_ALONG, sizeof(struct hewn_vertex_push)},
+        {{"vertices", hewn_text_iso_head, hewn_text_vertices, HEWN_FLAVOUR_ALONG, sizeof(struct hewn_vertex_push),
+          true},
          &extractor->vertices,
          STRAIGHT},
         {{"vertices_listed", hewn_text_iso_head, hewn_text_vertices_listed, HEWN_FLAVOUR_FOUR | HEWN_FLAVOUR_TOGETHER,
-          sizeof(struct hewn_listed_vertex_push)},
+          sizeof(struct hewn_listed_vertex_push), true},
          &extractor->vertices,
          LISTED},
+        {{"cull", hewn_text_iso_head, hewn_text_cull, HEWN_FLAVOUR_INTERVAL, sizeof(struct hewn_cull_push), true},
+         &extractor->cull,
+         STRAIGHT},
+        {{"choose", hewn_text_iso_head, hewn_text_choose, HEWN_FLAVOUR_CHOICES | HEWN_FLAVOUR_TOGETHER,
+          sizeof(struct hewn_choose_push), true},
+         &extractor->choose,
+         LISTED},
+        {{"keep_lists", hewn_text_iso_head, hewn_text_keep_lists, HEWN_FLAVOUR_CHOICES, sizeof(struct hewn_keep_push),
+          !host},
+         &extractor->keep_lists,
+         LISTED},
+        {{"signs", hewn_text_iso_head, hewn_text_signs, HEWN_FLAVOUR_WORD | HEWN_FLAVOUR_TOGETHER,
+          sizeof(struct hewn_sign_push), true},
+         &extractor->signs,
+         STRAIGHT | LISTED},
         {{"suspects", hewn_text_iso_head, hewn_text_suspects, HEWN_FLAVOUR_INTERVAL | HEWN_FLAVOUR_TOGETHER,
-          sizeof(struct hewn_suspect_push)},
+          sizeof(struct hewn_suspect_push), true},
          &extractor->suspects.find,
          STRAIGHT | LISTED},
     };
@@ -98,16 +102,17 @@ hewn_result hewn_extractor_reach(hewn_extractor *extractor, const struct hewn_gr
 
 static hewn_result create_fixed_programs(hewn_extractor *extractor, hewn_error *error)
 {
+    const bool host = extractor->on_host, listed = hewn_code_is_listed(extractor->code);
     const hewn_fixed_kernel kernels[] = {
-        HEWN_FIXED_KERNEL(clip, clip_push, false, &extractor->clip),
-        HEWN_FIXED_KERNEL(compact, compact_push, false, &extractor->compact),
-        HEWN_FIXED_KERNEL(gather, gather_push, false, &extractor->gather),
-        HEWN_FIXED_KERNEL(link, link_push, false, &extractor->link),
-        HEWN_FIXED_KERNEL(classify, classify_push, true, &extractor->classify),
-        HEWN_FIXED_KERNEL(cuts, cut_push, false, &extractor->suspects.cuts),
-        HEWN_FIXED_KERNEL(remote, remote_push, false, &extractor->suspects.remote),
-        HEWN_FIXED_KERNEL(spread, spread_push, true, &extractor->spread),
-        HEWN_FIXED_KERNEL(triangles, triangle_push, true, &extractor->triangles),
+        HEWN_FIXED_KERNEL(clip, clip_push, false, false, &extractor->clip),
+        HEWN_FIXED_KERNEL(compact, compact_push, false, !listed, &extractor->compact),
+        HEWN_FIXED_KERNEL(gather, gather_push, false, false, &extractor->gather),
+        HEWN_FIXED_KERNEL(link, link_push, false, true, &extractor->link),
+        HEWN_FIXED_KERNEL(classify, classify_push, true, !host, &extractor->classify),
+        HEWN_FIXED_KERNEL(cuts, cut_push, false, !host, &extractor->suspects.cuts),
+        HEWN_FIXED_KERNEL(remote, remote_push, false, !host, &extractor->suspects.remote),
+        HEWN_FIXED_KERNEL(spread, spread_push, true, !host, &extractor->spread),
+        HEWN_FIXED_KERNEL(triangles, triangle_push, true, !host, &extractor->triangles),
     };
     return hewn_fixed_kernels_create(extractor->device, kernels, sizeof kernels / sizeof *kernels, error);
 }
@@ -126,7 +131,7 @@ static hewn_result create_parts(hewn_extractor *extractor, const hewn_field *fie
                                 const hewn_code_desc *desc, hewn_error *error)
 {
     HEWN_TRY(hewn_code_create_as(extractor->device, field, root, desc, &extractor->code, error));
-    HEWN_TRY(hewn_scan_create(extractor->device, &extractor->scan, error));
+    HEWN_TRY(hewn_scan_create(extractor->device, !hewn_code_is_listed(extractor->code), &extractor->scan, error));
     HEWN_TRY(create_table(extractor, error));
     HEWN_TRY(create_fixed_programs(extractor, error));
     return create_field_programs(extractor, error);

@@ -145,7 +145,10 @@ void hewn_mc33_clear(hewn_extractor *extractor);
 hewn_result hewn_mc33_refine(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                              hewn_workspace *workspace, hewn_surface *surface, hewn_error *error);
 
-/* Parts of the emission of a refined surface: the records, and after the vertices on edges those in cells. */
+/* Parts of the emission of a refined surface: on the host the records of vertices and the triangles, on the device
+ * records of both; and after the vertices on edges those in cells. */
+void hewn_mc33_emit_on_host(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                            const hewn_surface *surface, const hewn_buffer buffers[3]);
 void hewn_mc33_record_spread(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
                              const hewn_surface *surface, const hewn_buffer buffers[3], hewn_commands *commands);
 void hewn_mc33_record_centres(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,

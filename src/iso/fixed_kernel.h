@@ -9,11 +9,11 @@
     extern const unsigned char hewn_shader_##name[];                                                                   \
     extern const size_t hewn_shader_##name##_size
 
-/* A row of a list of kernels: the shader, whether it reads a table as uniforms, and where its program goes. Its push
- * constants are a struct hewn_PUSH. */
-#define HEWN_FIXED_KERNEL(shader, push, uniforms, place)                                                               \
+/* A row of a list of kernels: the shader, whether it reads a table as uniforms, whether it is sure to be used soon, and
+ * where its program goes. Its push constants are a struct hewn_PUSH. */
+#define HEWN_FIXED_KERNEL(shader, push, uniforms, soon, place)                                                         \
     {                                                                                                                  \
-#shader, hewn_shader_##shader, hewn_shader_##shader##_size, sizeof(struct hewn_##push), uniforms, place        \
+#shader, hewn_shader_##shader, hewn_shader_##shader##_size, sizeof(struct hewn_##push), uniforms, soon, place  \
     }
 
 typedef struct hewn_fixed_kernel {
@@ -22,6 +22,7 @@ typedef struct hewn_fixed_kernel {
     size_t bytes;
     size_t push_bytes;
     bool uniforms;
+    bool soon;
     hewn_program **place;
 } hewn_fixed_kernel;
 

@@ -284,8 +284,10 @@ hewn_result hewn_surface_emit(const hewn_extractor *extractor, const struct hewn
     hewn_commands *commands;
     HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
     hewn_commands_fill(commands, summary, 0, summary->size, 0);
-    bool refined = surface->asked, on_host = extractor->on_host && !refined;
-    if (on_host)
+    bool refined = surface->asked, on_host = extractor->on_host;
+    if (on_host && refined)
+        hewn_mc33_emit_on_host(extractor, grid, bricks, surface, buffers);
+    else if (on_host)
         emit_on_host(grid, bricks, surface, buffers);
     else if (refined)
         hewn_mc33_record_spread(extractor, grid, bricks, surface, buffers, commands);

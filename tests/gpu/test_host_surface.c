@@ -86,16 +86,18 @@ static void test_any_number_of_threads(void **state)
     unsigned messages;
     hewn_device *device = gpu_test_open(&messages);
     subject made = make_subject(device, make_waves, 7, HEWN_EVALUATION_AUTO);
-    hewn_extract_desc desc = grid_of(72, 66, 70, false, HEWN_METHOD_MARCHING_CUBES);
-    int before = omp_get_max_threads();
-    omp_set_num_threads(1);
-    hewn_triangles one = extract(&made, true, &desc);
-    omp_set_num_threads(5);
-    hewn_triangles five = extract(&made, true, &desc);
-    omp_set_num_threads(before);
-    assert_same(&one, &five);
-    hewn_triangles_destroy(&one);
-    hewn_triangles_destroy(&five);
+    for (int i = 0; i < 2; i++) {
+        hewn_extract_desc desc = grid_of(72, 66, 70, false, i ? HEWN_METHOD_MC33 : HEWN_METHOD_MARCHING_CUBES);
+        int before = omp_get_max_threads();
+        omp_set_num_threads(1);
+        hewn_triangles one = extract(&made, true, &desc);
+        omp_set_num_threads(5);
+        hewn_triangles five = extract(&made, true, &desc);
+        omp_set_num_threads(before);
+        assert_same(&one, &five);
+        hewn_triangles_destroy(&one);
+        hewn_triangles_destroy(&five);
+    }
     free_subject(&made);
     gpu_test_close(&device, &messages);
 }

@@ -14,7 +14,7 @@ static int open_fixture(void **state)
 {
     static fixture shared;
     shared.device = gpu_test_open(&shared.messages);
-    GPU_TEST_TRY(hewn_scan_create(shared.device, &shared.scan, &error));
+    GPU_TEST_TRY(hewn_scan_create(shared.device, false, &shared.scan, &error));
     *state = &shared;
     return 0;
 }
