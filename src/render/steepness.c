@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "field/operate.h"
+#include "field/sampling.h"
 #include "render/tracer.h"
 
 /* What is known of a node: its values, its slope, and, where it is a linear form of x, y and z, that. Its gradient g
@@ -249,6 +250,13 @@ static void set_two(steep *out, const hewn_field *field, const hewn_node_data *n
         set_round(out);
 }
 
+/* Past its lattice a sampling goes on as a distance from that. */
+static double sampled_slope(const hewn_sampling *samples)
+{
+    double between = (double)samples->steepest;
+    return samples->endless ? between : fmax(1, between);
+}
+
 static void set_shape(steep *out, const hewn_node_data *node, const steep *in)
 {
     switch (node->op) {
@@ -266,6 +274,10 @@ static void set_shape(steep *out, const hewn_node_data *node, const steep *in)
     case HEWN_OP_NOISE_CELLULAR:
         set_joint(out, in, 3);
         out->bound = times(hewn_op_noise_slope(node->op), out->bound);
+        break;
+    case HEWN_OP_SAMPLED:
+        set_joint(out, in, 3);
+        out->bound = times(sampled_slope(node->samples), out->bound);
         break;
     case HEWN_OP_PLANE:
         set_joint(out, in, 3);
