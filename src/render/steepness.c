@@ -250,13 +250,6 @@ static void set_two(steep *out, const hewn_field *field, const hewn_node_data *n
         set_round(out);
 }
 
-/* Past its lattice a sampling goes on as a distance from that. */
-static double sampled_slope(const hewn_sampling *samples)
-{
-    double between = (double)samples->steepest;
-    return samples->endless ? between : fmax(1, between);
-}
-
 static void set_shape(steep *out, const hewn_node_data *node, const steep *in)
 {
     switch (node->op) {
@@ -277,7 +270,9 @@ static void set_shape(steep *out, const hewn_node_data *node, const steep *in)
         break;
     case HEWN_OP_SAMPLED:
         set_joint(out, in, 3);
-        out->bound = times(sampled_slope(node->samples), out->bound);
+        out->bound = times(
+            hewn_sampling_steepest(node->samples, (const hewn_interval[3]){in[0].range, in[1].range, in[2].range}),
+            out->bound);
         break;
     case HEWN_OP_PLANE:
         set_joint(out, in, 3);
