@@ -49,10 +49,8 @@ static HEWN_INTO_CLONES void length(const hewn_lane_step *step, const float *row
     const float *c = rows + (size_t)step->from[2] * HEWN_LANES, n = step->number;
     if (step->input_count == 2)
         HEWN_LANE_LOOP(count)
-        r[i] = sqrtf(a[i] * a[i] + b[i] * b[i]) + n;
-    else
-        HEWN_LANE_LOOP(count)
-        r[i] = sqrtf(a[i] * a[i] + b[i] * b[i] + c[i] * c[i]) + n;
+    r[i] = sqrtf(a[i] * a[i] + b[i] * b[i]) + n;
+    else HEWN_LANE_LOOP(count) r[i] = sqrtf(a[i] * a[i] + b[i] * b[i] + c[i] * c[i]) + n;
 }
 
 static HEWN_INTO_CLONES void affine(const hewn_lane_tape *tape, const hewn_lane_step *step, const float *rows,
@@ -63,13 +61,9 @@ static HEWN_INTO_CLONES void affine(const hewn_lane_tape *tape, const hewn_lane_
     const float f0 = f[0], f1 = f[1], f2 = f[2], n = step->number;
     if (step->input_count == 1)
         HEWN_LANE_LOOP(count)
-        r[i] = f0 * a[i] + n;
-    else if (step->input_count == 2)
-        HEWN_LANE_LOOP(count)
-        r[i] = f0 * a[i] + f1 * b[i] + n;
-    else
-        HEWN_LANE_LOOP(count)
-        r[i] = f0 * a[i] + f1 * b[i] + f2 * c[i] + n;
+    r[i] = f0 * a[i] + n;
+    else if (step->input_count == 2) HEWN_LANE_LOOP(count) r[i] = f0 * a[i] + f1 * b[i] + n;
+    else HEWN_LANE_LOOP(count) r[i] = f0 * a[i] + f1 * b[i] + f2 * c[i] + n;
 }
 
 HEWN_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_lane_points *points, uint32_t count)

@@ -17,9 +17,9 @@ typedef struct host_tracer {
     hewn_octree octree;
     hewn_box box;
     float slope;
-    float steepness; /* no slope is more: rays go on by values over that; 0: by `slopes` */
+    float steepness;    /* no slope is more: rays go on by values over that; 0: by `slopes` */
     hewn_slopes slopes; /* where these tell none, by interval bounds */
-    float slack;     /* rounding errors of values are below this */
+    float slack;        /* rounding errors of values are below this */
 } host_tracer;
 
 /* A ray under way. */
