@@ -11,4 +11,9 @@ hewn_result hewn_shape_create(const hewn_glyph_outline *outline, double scale, c
                               hewn_shape *out, hewn_error *error);
 void hewn_shape_clear(hewn_shape *shape);
 
+/* Other colours of which the same holds, but that a contour without corners may have two of the three; 0 is what
+ * hewn_shape_create() gives, other numbers any that have nothing to do with each other. Which of them is best depends
+ * on what lies close together: the two sides of a thin stroke are told apart only where they differ. */
+void hewn_shape_recolour(hewn_shape *shape, uint32_t number);
+
 #endif

@@ -47,7 +47,7 @@ static bool is_coloured(const hewn_drawn *drawn, const square *own)
 {
     for (int i = 0; i < 4; i++) {
         const uint8_t *texel = drawn->texels[own->at[i]];
-        if (texel[0] != texel[1] || texel[1] != texel[2])
+        if (texel[0] != texel[3] || texel[1] != texel[3] || texel[2] != texel[3])
             return true;
     }
     return false;
@@ -124,7 +124,19 @@ static size_t find_wrong(const hewn_shape *shape, const hewn_drawn *drawn, const
     return count;
 }
 
-hewn_result hewn_drawn_soften(const hewn_shape *shape, hewn_drawn *drawn, size_t *count, hewn_error *error)
+uint8_t hewn_texel_middle(const uint8_t texel[4])
+{
+    uint8_t low = texel[0] < texel[1] ? texel[0] : texel[1], high = texel[0] < texel[1] ? texel[1] : texel[0];
+    return texel[2] < low ? low : texel[2] > high ? high : texel[2];
+}
+
+static void soften(uint8_t texel[4], bool gently)
+{
+    bool coloured = texel[0] != texel[1] || texel[1] != texel[2];
+    memset(texel, gently && coloured ? hewn_texel_middle(texel) : texel[3], 3);
+}
+
+hewn_result hewn_drawn_soften(const hewn_shape *shape, hewn_drawn *drawn, bool gently, size_t *count, hewn_error *error)
 {
     size_t texels = (size_t)drawn->width * drawn->height;
     uint8_t *changed = hewn_alloc(texels, 1), *marked = hewn_alloc_zero(texels, 1);
@@ -139,9 +151,9 @@ hewn_result hewn_drawn_soften(const hewn_shape *shape, hewn_drawn *drawn, size_t
         for (size_t i = 0; i < texels; i++) {
             uint8_t *texel = drawn->texels[i];
             changed[i] = marked[i] && (texel[0] != texel[3] || texel[1] != texel[3] || texel[2] != texel[3]);
+            *count += changed[i] && (texel[0] != texel[1] || texel[1] != texel[2]);
             if (changed[i])
-                memset(texel, texel[3], 3);
-            *count += changed[i];
+                soften(texel, gently);
             marked[i] = 0;
         }
     }

@@ -1,9 +1,14 @@
 #include "atlas/glyph.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "atlas/colours.h"
 #include "base/alloc.h"
 #include "base/error.h"
+
+/* How many ways to colour edges are tried. */
+enum { COLOURINGS = 12 };
 
 uint8_t hewn_texel_of(double distance, double range)
 {
@@ -43,34 +48,94 @@ static void draw_row(const hewn_shape *shape, hewn_atlas_type type, hewn_drawn *
     }
 }
 
-static void copy_texels(const hewn_drawn *drawn, hewn_atlas_type type, const hewn_texels *texels)
+static void copy_texels(const uint8_t (*drawn)[4], hewn_atlas_type type, const hewn_texels *texels)
 {
-    for (uint32_t y = 0; y < drawn->height; y++)
-        for (uint32_t x = 0; x < drawn->width; x++) {
-            const uint8_t *from = drawn->texels[(size_t)y * drawn->width + x];
+    for (uint32_t y = 0; y < texels->height; y++)
+        for (uint32_t x = 0; x < texels->width; x++) {
+            const uint8_t *from = drawn[(size_t)y * texels->width + x];
             uint8_t *to = texels->first + y * texels->stride + (size_t)x * texels->channels;
             for (uint32_t k = 0; k < texels->channels; k++)
                 to[k] = from[type == HEWN_ATLAS_SDF ? 3 : k];
         }
 }
 
-hewn_result hewn_glyph_draw(const hewn_shape *shape, hewn_atlas_type type, double range, const hewn_texels *texels,
+/* What is kept of the colours that were tried. */
+typedef struct trial {
+    hewn_drawn raw, drawn; /* before and after softening; they share their plain distances */
+    hewn_covered covered;
+    uint8_t (*best)[4];
+    double least; /* of what is wrong */
+    size_t softened;
+} trial;
+
+static void draw_rows(const hewn_shape *shape, hewn_atlas_type type, hewn_drawn *drawn)
+{
+    double first[4] = {INFINITY, INFINITY, INFINITY, INFINITY};
+    for (uint32_t y = 0; y < drawn->height; y++)
+        draw_row(shape, type, drawn, y, first);
+}
+
+/* With the shape's colours as they are. */
+static hewn_result try_colours(const hewn_shape *shape, hewn_atlas_type type, trial *own)
+{
+    size_t bytes = (size_t)own->raw.width * own->raw.height * sizeof *own->best;
+    draw_rows(shape, type, &own->raw);
+    for (int gently = 0; gently < 2; gently++) {
+        size_t softened;
+        memcpy(own->drawn.texels, own->raw.texels, bytes);
+        HEWN_TRY(hewn_drawn_soften(shape, &own->drawn, gently, &softened, NULL));
+        double wrong = hewn_drawn_wrong(&own->drawn, &own->covered);
+        if (wrong < own->least) {
+            own->least = wrong;
+            own->softened = softened;
+            memcpy(own->best, own->drawn.texels, bytes);
+        }
+    }
+    return HEWN_OK;
+}
+
+static hewn_result draw_coloured(hewn_shape *shape, hewn_atlas_type type, trial *own)
+{
+    size_t count = (size_t)own->raw.width * own->raw.height;
+    draw_rows(shape, type, &own->raw);
+    memcpy(own->best, own->raw.texels, count * sizeof *own->best);
+    memcpy(own->drawn.texels, own->raw.texels, count * sizeof *own->best);
+    HEWN_TRY(hewn_drawn_soften(shape, &own->drawn, false, &own->softened, NULL));
+    if (own->softened == 0)
+        return HEWN_OK;
+    HEWN_TRY(hewn_shape_cover(shape, own->raw.width, own->raw.height, &own->covered, NULL));
+    own->least = INFINITY;
+    for (uint32_t number = 0; number < COLOURINGS && own->softened > 0; number++) {
+        hewn_shape_recolour(shape, number);
+        HEWN_TRY(try_colours(shape, type, own));
+    }
+    return HEWN_OK;
+}
+
+hewn_result hewn_glyph_draw(hewn_shape *shape, hewn_atlas_type type, double range, const hewn_texels *texels,
                             size_t *softened, hewn_error *error)
 {
     size_t count = (size_t)texels->width * texels->height;
-    hewn_drawn drawn = {.width = texels->width, .height = texels->height, .range = range};
-    drawn.texels = hewn_alloc(count, sizeof *drawn.texels);
-    drawn.distances = hewn_alloc(count, sizeof *drawn.distances);
-    hewn_result result = drawn.texels && drawn.distances ? HEWN_OK : HEWN_OUT_OF_MEMORY;
-    *softened = 0;
-    double first[4] = {INFINITY, INFINITY, INFINITY, INFINITY};
-    for (uint32_t y = 0; y < drawn.height && result == HEWN_OK; y++)
-        draw_row(shape, type, &drawn, y, first);
-    if (result == HEWN_OK && (type == HEWN_ATLAS_MSDF || type == HEWN_ATLAS_MTSDF))
-        result = hewn_drawn_soften(shape, &drawn, softened, NULL);
+    trial own = {.raw = {.width = texels->width, .height = texels->height, .range = range}};
+    own.raw.distances = hewn_alloc(count, sizeof *own.raw.distances);
+    own.drawn = own.raw;
+    own.raw.texels = hewn_alloc(count, sizeof *own.raw.texels);
+    own.drawn.texels = hewn_alloc(count, sizeof *own.drawn.texels);
+    own.best = hewn_alloc(count, sizeof *own.best);
+    hewn_result result =
+        own.raw.distances && own.raw.texels && own.drawn.texels && own.best ? HEWN_OK : HEWN_OUT_OF_MEMORY;
+    bool coloured = type == HEWN_ATLAS_MSDF || type == HEWN_ATLAS_MTSDF;
+    if (result == HEWN_OK && coloured)
+        result = draw_coloured(shape, type, &own);
+    else if (result == HEWN_OK)
+        draw_rows(shape, type, &own.raw);
     if (result == HEWN_OK)
-        copy_texels(&drawn, type, texels);
-    hewn_free(drawn.texels);
-    hewn_free(drawn.distances);
+        copy_texels(coloured ? (const uint8_t(*)[4])own.best : (const uint8_t(*)[4])own.raw.texels, type, texels);
+    *softened = own.softened;
+    hewn_free(own.raw.distances);
+    hewn_free(own.raw.texels);
+    hewn_free(own.drawn.texels);
+    hewn_free(own.best);
+    hewn_free(own.covered.shares);
     return result == HEWN_OK ? HEWN_OK : hewn_fail(error, result, "out of memory for a letter");
 }

@@ -10,6 +10,7 @@ enum { HEWN_RED = 1, HEWN_GREEN = 2, HEWN_BLUE = 4, HEWN_WHITE = 7 };
 typedef struct hewn_edge {
     hewn_bezier curve;
     unsigned colour;
+    bool begins; /* at a corner */
     double lo[2], hi[2];
     double powers[4][2]; /* of the curve, and of its derivative */
     double slope[3][2];
@@ -24,6 +25,8 @@ typedef struct hewn_edge {
 typedef struct hewn_shape {
     hewn_edge *edges;
     size_t count;
+    size_t *ends; /* of each contour, one past its last edge */
+    size_t contours;
 } hewn_shape;
 
 /* The place of an edge that is nearest to a point. */

@@ -12,6 +12,8 @@ enum {
     DIVISIONS = 3,        /* of one cell */
     CROWDED = 12,         /* a cell of more sides is divided where the outline is close */
     CROWDED_FAR = 64,     /* and elsewhere */
+    SETTLED = 4,          /* a box of so few sides and turns is not looked at cell by cell where the outline is close */
+    SETTLED_FAR = 16,     /* and elsewhere, where hardly anybody asks */
     SMALL = 4,            /* a cell is divided into so many a side */
     RING = 8,             /* cells across a ring */
     DIRECTIONS = 64,      /* for what is far away */
@@ -31,15 +33,22 @@ typedef struct pick {
     bool close; /* the outline is hardly farther off than the box is large */
 } pick;
 
+/* A side in double; 0 is the inverse of no length's square. */
+typedef struct segment {
+    double from[2], along[2], inverse;
+} segment;
+
 typedef struct making {
     const float (*sides)[HEWN_TABLE_SIDE];
     uint32_t count, most;
     double size, middle[2], half;
+    segment *segments;      /* the sides */
     double *near;           /* a number for each side */
     pick picks[DEPTH_MOST]; /* one for each level of the descent */
     uint32_t *words;
     size_t used, capacity;
     uint32_t longest;
+    uint32_t crowded_far; /* what CROWDED_FAR says, or more where nobody asks */
     bool crowded, failed;
 } making;
 
@@ -73,13 +82,12 @@ static square widened(const making *own, const square *box)
 
 /* --- picking ------------------------------------------------------------------------------------------------------ */
 
-static double square_from(const float *side, double x, double y)
+static inline double square_from(const segment *side, double x, double y)
 {
-    double ex = (double)side[2] - (double)side[0], ey = (double)side[3] - (double)side[1];
-    double dx = x - (double)side[0], dy = y - (double)side[1], along = ex * ex + ey * ey;
-    double t = along > 0 ? lesser(greater((dx * ex + dy * ey) / along, 0), 1) : 0;
-    dx -= t * ex;
-    dy -= t * ey;
+    double dx = x - side->from[0], dy = y - side->from[1];
+    double t = lesser(greater((dx * side->along[0] + dy * side->along[1]) * side->inverse, 0), 1);
+    dx -= t * side->along[0];
+    dy -= t * side->along[1];
     return dx * dx + dy * dy;
 }
 
@@ -107,27 +115,30 @@ static double gain(const float *side, double far, const float *other, double oth
 static double find_near(making *own, const pick *from, const square *box)
 {
     double x = 0.5 * (box->lo[0] + box->hi[0]), y = 0.5 * (box->lo[1] + box->hi[1]);
-    double reach = hypot(box->hi[0] - x, box->hi[1] - y), least = INFINITY, most = INFINITY;
+    double rx = box->hi[0] - x, ry = box->hi[1] - y, reach = sqrt(rx * rx + ry * ry), least = INFINITY, most = INFINITY;
     double slack = apart * (own->size + fabs(x) + fabs(y) + 2 * reach) + 1e-18;
     const float *nearest = own->sides[0];
     for (uint32_t i = 0; i < from->side_count; i++) {
-        const float *side = own->sides[from->sides[i]];
-        own->near[i] = sqrt(square_from(side, x, y));
-        nearest = own->near[i] < least ? side : nearest;
-        least = lesser(least, own->near[i]);
+        double away = own->near[i] = square_from(&own->segments[from->sides[i]], x, y);
+        nearest = away < least ? own->sides[from->sides[i]] : nearest;
+        least = lesser(least, away);
     }
+    least = sqrt(least);
+    double limit = least + 2 * reach + slack, limit_square = limit * limit;
     for (uint32_t i = 0; i < from->side_count; i++) {
-        if (own->near[i] > least + 2 * reach + slack)
+        if (own->near[i] > limit_square)
             continue;
         double farthest = 0; /* at a corner, since a distance from what is convex is convex */
         for (int corner = 0; corner < 4; corner++)
-            farthest = greater(farthest, square_from(own->sides[from->sides[i]], corner & 1 ? box->hi[0] : box->lo[0],
-                                                     corner & 2 ? box->hi[1] : box->lo[1]));
-        most = lesser(most, sqrt(farthest));
+            farthest =
+                greater(farthest, square_from(&own->segments[from->sides[i]], corner & 1 ? box->hi[0] : box->lo[0],
+                                              corner & 2 ? box->hi[1] : box->lo[1]));
+        most = lesser(most, farthest);
     }
+    most = sqrt(most);
     for (uint32_t i = 0; i < from->side_count; i++) {
-        double far = own->near[i];
-        own->near[i] = far - reach <= most + slack &&
+        double far = own->near[i] <= limit_square ? sqrt(own->near[i]) : INFINITY;
+        own->near[i] = far <= limit && far - reach <= most + slack &&
                        far <= least + slack + gain(own->sides[from->sides[i]], far, nearest, least, reach);
     }
     return least;
@@ -267,8 +278,8 @@ static void write_cell(making *own, int depth, const square *box, /* NOLINT(misc
                        size_t entry, int divisions)
 {
     const pick *from = &own->picks[depth];
-    bool crowded =
-        from->close ? from->side_count > CROWDED && divisions > 0 : from->side_count > CROWDED_FAR && divisions > 0;
+    uint32_t length = from->close ? from->side_count : from->side_count + from->turn_count;
+    bool crowded = divisions > 0 && length > (from->close ? CROWDED : own->crowded_far);
     if (!crowded || own->used > WORDS_MOST / 2) {
         write_pick(own, from, entry);
         return;
@@ -285,12 +296,31 @@ static void write_cell(making *own, int depth, const square *box, /* NOLINT(misc
     own->words[entry + 1] = 1U << 31;
 }
 
-/* Halves a box until its parts are cells: `first` is the lowest one's place in rows of `across`. */
+/* So little matters in a box that its cells may share it. */
+static bool is_settled(const pick *from)
+{
+    return from->side_count + from->turn_count <= (uint32_t)(from->close ? SETTLED : SETTLED_FAR);
+}
+
+/* What matters in a box, for all of its cells. */
+static void share_pick(making *own, const pick *from, uint32_t size, size_t first, uint32_t across)
+{
+    write_pick(own, from, 2 * first);
+    for (size_t i = 1; i < (size_t)size * size && !own->failed && !own->crowded; i++)
+        memcpy(own->words + 2 * (first + i % size + i / size * across), own->words + 2 * first, 2 * sizeof *own->words);
+}
+
+/* Halves a box until its parts are cells, or may share what matters: `first` is the lowest one's place in rows of
+ * `across`. */
 static void write_cells(making *own, int depth, const square *box, /* NOLINT(misc-no-recursion): see DEPTH_MOST */
                         uint32_t size, size_t first, uint32_t across)
 {
     if (size == 1) {
         write_cell(own, depth, box, 2 * first, DIVISIONS);
+        return;
+    }
+    if (depth > 0 && is_settled(&own->picks[depth])) {
+        share_pick(own, &own->picks[depth], size, first, across);
         return;
     }
     for (uint32_t i = 0; i < 4 && !own->failed && !own->crowded; i++) {
@@ -311,14 +341,20 @@ static square around(const making *own, double half)
 static void write_ring(making *own, uint32_t ring, size_t first)
 {
     const square box = around(own, own->half * pow(4, ring));
+    own->crowded_far = ring == 1 ? CROWDED_FAR : own->most; /* bounds and rays end long before */
     for (uint32_t i = 0; i < RING * RING && !own->failed && !own->crowded; i++) {
-        uint32_t x = i % RING, y = i / RING;
-        bool inside = x >= 3 && x < 5 && y >= 3 && y < 5;
+        uint32_t k = i % 4, block = i / 4, x = 2 * (block % 4) + k % 2, y = 2 * (block / 4) + k / 2; /* four by four */
+        bool inside = x >= 3 && x < 5 && y >= 3 && y < 5, whole = block % 4 % 3 == 0 || block / 4 % 3 == 0;
         const square cell = part(&box, x, y, RING);
+        if (whole && k == 0) {
+            const square four = part(&box, x / 2, y / 2, RING / 2);
+            descend(own, 0, &four);
+        }
         if (inside)
             continue;
-        descend(own, 0, &cell);
-        write_cell(own, 1, &cell, 2 * (first + i), DIVISIONS);
+        int depth = whole ? 1 : 0;
+        descend(own, depth, &cell);
+        write_cell(own, depth + 1, &cell, 2 * (first + x + (size_t)RING * y), DIVISIONS);
     }
 }
 
@@ -371,17 +407,29 @@ static void measure(making *own)
     own->half = 0.625 * greater(hi[0] - lo[0], hi[1] - lo[1]);
 }
 
+static segment segment_of(const float *side)
+{
+    segment out = {.from = {(double)side[0], (double)side[1]},
+                   .along = {(double)side[2] - (double)side[0], (double)side[3] - (double)side[1]}};
+    double length = out.along[0] * out.along[0] + out.along[1] * out.along[1];
+    out.inverse = length > 0 ? 1 / length : 0;
+    return out;
+}
+
 static bool make_room(making *own)
 {
     own->near = hewn_alloc(own->count, sizeof *own->near);
-    bool enough = own->near != NULL;
+    own->segments = hewn_alloc(own->count, sizeof *own->segments);
+    bool enough = own->near && own->segments;
     for (int i = 0; i < DEPTH_MOST; i++) {
         own->picks[i].sides = hewn_alloc(own->count, sizeof *own->picks[i].sides);
         own->picks[i].turns = hewn_alloc((size_t)2 * own->count, sizeof *own->picks[i].turns);
         enough = enough && own->picks[i].sides && own->picks[i].turns;
     }
-    for (uint32_t i = 0; i < own->count && enough; i++)
+    for (uint32_t i = 0; i < own->count && enough; i++) {
         own->picks[0].sides[i] = i;
+        own->segments[i] = segment_of(own->sides[i]);
+    }
     own->picks[0].side_count = own->count;
     return enough;
 }
@@ -391,6 +439,7 @@ static void fill(making *own, uint32_t across)
     size_t cells = (size_t)across * across, all = cells + (size_t)HEWN_TABLE_RINGS * RING * RING;
     add_words(own, 2 * (all + 2));
     const square box = around(own, own->half);
+    own->crowded_far = CROWDED_FAR;
     write_cells(own, 0, &box, across, 0, across);
     for (uint32_t ring = 0; ring < HEWN_TABLE_RINGS; ring++)
         write_ring(own, ring + 1, cells + (size_t)ring * RING * RING);
@@ -418,6 +467,7 @@ hewn_result hewn_outline_table_create(const float (*sides)[HEWN_TABLE_SIDE], uin
         hewn_free(own.picks[i].turns);
     }
     hewn_free(own.near);
+    hewn_free(own.segments);
     if (own.failed || own.crowded) {
         hewn_free(own.words);
         return own.failed ? hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the table of an outline") : HEWN_OK;

@@ -74,4 +74,7 @@ static inline uint32_t hewn_sampling_entries(const hewn_sampling *sampling, int 
 double hewn_sampling_value(const hewn_sampling *sampling, const double at[3], double slopes[3]);
 hewn_interval hewn_sampling_bound(const hewn_sampling *sampling, const hewn_interval in[3]);
 
+/* No slope is more in a box of such places. */
+double hewn_sampling_steepest(const hewn_sampling *sampling, const hewn_interval in[3]);
+
 #endif

@@ -117,11 +117,10 @@ static hewn_interval by_extent(const extent *all, const double gap[2])
     return (hewn_interval){low, high, false};
 }
 
-hewn_interval hewn_sampling_bound(const hewn_sampling *s, const hewn_interval in[3])
+/* Of the entry that holds a box of places, as far as they are on the lattice. */
+static extent extent_at(const hewn_sampling *s, const hewn_interval in[3])
 {
     uint32_t from[3], to[3];
-    double middle[3], reach = 0, far = 0, near_gap = 0, far_gap = 0;
-    bool nan = in[0].maybe_nan || in[1].maybe_nan || in[2].maybe_nan;
     for (int i = 0; i < 3; i++) {
         double half = 0.5 * s->cells[i], room = 0x1p-40 * (1 + half);
         double low = fmin(fmax(in[i].lo + half - room, 0), s->cells[i]);
@@ -130,6 +129,26 @@ hewn_interval hewn_sampling_bound(const hewn_sampling *s, const hewn_interval in
         to[i] = (uint32_t)high;
         from[i] -= from[i] == s->cells[i] && from[i] > 0;
         to[i] -= to[i] == s->cells[i] && to[i] > 0;
+    }
+    return extent_of(s, from, to);
+}
+
+/* Past its lattice a sampling goes on as a distance from that. */
+double hewn_sampling_steepest(const hewn_sampling *s, const hewn_interval in[3])
+{
+    double between = (double)s->steepest;
+    if (!in[0].maybe_nan && !in[1].maybe_nan && !in[2].maybe_nan)
+        between = (double)extent_at(s, in).steepest;
+    return s->endless ? between : fmax(1, between);
+}
+
+hewn_interval hewn_sampling_bound(const hewn_sampling *s, const hewn_interval in[3])
+{
+    extent all = extent_at(s, in);
+    double middle[3], reach = 0, far = 0, near_gap = 0, far_gap = 0;
+    bool nan = in[0].maybe_nan || in[1].maybe_nan || in[2].maybe_nan;
+    for (int i = 0; i < 3; i++) {
+        double half = 0.5 * s->cells[i];
         double side = 0.5 * in[i].hi - 0.5 * in[i].lo;
         middle[i] = 0.5 * in[i].lo + 0.5 * in[i].hi;
         bool counts = s->cells[i] > 0;
@@ -140,7 +159,6 @@ hewn_interval hewn_sampling_bound(const hewn_sampling *s, const hewn_interval in
         near_gap += s->endless ? 0 : begins * begins;
         far_gap += s->endless ? 0 : ends * ends;
     }
-    extent all = extent_of(s, from, to);
     hewn_interval out = by_extent(&all, (const double[2]){sqrt(near_gap), sqrt(far_gap)});
     double size = fmax(fabs(out.lo), fabs(out.hi));
     double error = 0x1p-44 * (fmin(size, 0x1p1000) + (1 + (double)all.steepest) * (1 + fmin(far, 0x1p1000)));

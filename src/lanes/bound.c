@@ -12,7 +12,7 @@
 
 /* What one step reads and writes; `unsure` gathers NaN where a bound is not finite. */
 typedef struct rows {
-    const float *alo, *ahi, *blo, *bhi;
+    const float *alo, *ahi, *blo, *bhi, *clo, *chi;
     float *lo, *hi, *unsure;
     int32_t *choice;
     float *places; /* of outlines */
@@ -145,6 +145,51 @@ static inline float square_high(float a, float b)
     return farthest * farthest;
 }
 
+static HEWN_INTO_CLONES void length(const hewn_lane_step *step, rows *r, uint32_t count)
+{
+    float *restrict lo = r->lo, *restrict hi = r->hi, *restrict unsure = r->unsure, n = step->number;
+    bool three = step->input_count > 2;
+    for (int end = 0; end < 2; end++) {
+        float *restrict out = end == 0 ? lo : hi;
+        HEWN_LANE_LOOP(count)
+        {
+            float sum = end == 0 ? square_low(r->alo[i], r->ahi[i]) + square_low(r->blo[i], r->bhi[i])
+                                 : square_high(r->alo[i], r->ahi[i]) + square_high(r->blo[i], r->bhi[i]);
+            float third = end == 0 ? square_low(r->clo[i], r->chi[i]) : square_high(r->clo[i], r->chi[i]);
+            out[i] = sqrtf(three ? sum + third : sum) + n;
+        }
+    }
+    HEWN_LANE_LOOP(count)
+    unsure[i] += (hi[i] - lo[i]) * 0.0F;
+}
+
+static HEWN_INTO_CLONES void affine(const float *factors, const hewn_lane_step *step, rows *r, uint32_t count)
+{
+    const float *const los[] = {r->alo, r->blo, r->clo}, *const his[] = {r->ahi, r->bhi, r->chi};
+    float *restrict lo = r->lo, *restrict hi = r->hi, *restrict unsure = r->unsure, n = step->number;
+    for (uint32_t k = 0; k < step->input_count; k++) {
+        const float f = factors[k], *below = f < 0 ? his[k] : los[k], *above = f < 0 ? los[k] : his[k];
+        if (k == 0)
+            HEWN_LANE_LOOP(count)
+            {
+                lo[i] = f * below[i];
+                hi[i] = f * above[i];
+            }
+        else
+            HEWN_LANE_LOOP(count)
+            {
+                lo[i] += f * below[i];
+                hi[i] += f * above[i];
+            }
+    }
+    HEWN_LANE_LOOP(count)
+    {
+        lo[i] += n;
+        hi[i] += n;
+        unsure[i] += (hi[i] - lo[i]) * 0.0F;
+    }
+}
+
 static void run_other(const hewn_lane_tape *tape, const hewn_lane_step *step, const float *values, rows *r,
                       uint32_t count)
 {
@@ -178,6 +223,9 @@ HEWN_CLONES static void run_step(const hewn_lane_tape *tape, const hewn_lane_ste
     case HEWN_LANE_ADD: EACH(alo[i] + blo[i], ahi[i] + bhi[i]);
     case HEWN_LANE_SUB: EACH(alo[i] - bhi[i], ahi[i] - blo[i]);
     case HEWN_LANE_MUL: EACH(product_low(alo[i], ahi[i], blo[i], bhi[i]), product_high(alo[i], ahi[i], blo[i], bhi[i]));
+    case HEWN_LANE_OVER: EACH(greatest(greatest(alo[i], -ahi[i]), 0.0F) + n, greatest(-alo[i], ahi[i]) + n);
+    case HEWN_LANE_LENGTH: length(step, r, count); break;
+    case HEWN_LANE_AFFINE: affine(tape->factors[step->node], step, r, count); break;
     case HEWN_LANE_FLOOR_AT: EACH_CHOICE(greatest(alo[i], n), greatest(ahi[i], n), alo[i] > n, ahi[i] < n);
     case HEWN_LANE_CEIL_AT: EACH_CHOICE(least(alo[i], n), least(ahi[i], n), ahi[i]<n, alo[i]> n);
     case HEWN_LANE_MIN: EACH_CHOICE(least(alo[i], blo[i]), least(ahi[i], bhi[i]), ahi[i] < blo[i], bhi[i] < alo[i]);
@@ -204,6 +252,8 @@ void hewn_lanes_bound(const hewn_lane_tape *tape, hewn_lane_work *work, const he
         r.ahi = r.alo + HEWN_LANES;
         r.blo = values + (size_t)step->from[1] * ROW;
         r.bhi = r.blo + HEWN_LANES;
+        r.clo = values + (size_t)step->from[2] * ROW;
+        r.chi = r.clo + HEWN_LANES;
         r.lo = values + (size_t)step->out * ROW;
         r.hi = r.lo + HEWN_LANES;
         run_step(tape, step, values, boxes, &r, count);

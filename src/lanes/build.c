@@ -13,7 +13,7 @@ enum { MOST_STEPS_A_NODE = 24 };
 typedef struct builder {
     hewn_lane_tape *tape;   /* no registers yet; outlines have their own arrays */
     hewn_lane_operands *in; /* of each step */
-    uint32_t other_count;
+    uint32_t other_count, factor_count;
     size_t outline_room;
 } builder;
 
@@ -59,17 +59,30 @@ static uint32_t number(builder *b, double value)
 /* --- shapes, step by step as in shaders/field/point.glsl ------------------------------------------------------------
  */
 
-static uint32_t square_sum(builder *b, const uint32_t *in, int count)
+/* Of two or three. */
+static uint32_t length_of(builder *b, const uint32_t *in, int count)
 {
-    uint32_t sum = one(b, HEWN_LANE_SQUARE, in[0]);
-    for (int i = 1; i < count; i++)
-        sum = two(b, HEWN_LANE_ADD, sum, one(b, HEWN_LANE_SQUARE, in[i]));
-    return one(b, HEWN_LANE_SQRT, sum);
+    uint32_t at = two(b, HEWN_LANE_LENGTH, in[0], in[1]);
+    b->in[at][2] = count > 2 ? in[2] : HEWN_NO_STEP;
+    b->tape->steps[at].input_count = (uint8_t)count;
+    return at;
 }
 
 static uint32_t length2(builder *b, uint32_t x, uint32_t y)
 {
-    return square_sum(b, (uint32_t[]){x, y}, 2);
+    return length_of(b, (uint32_t[]){x, y}, 2);
+}
+
+/* Lengths take a number along. */
+static uint32_t plus(builder *b, uint32_t a, double number)
+{
+    hewn_lane_step *step = &b->tape->steps[a];
+    if (step->kind != HEWN_LANE_LENGTH || step->number != 0)
+        return with(b, HEWN_LANE_PLUS, a, number);
+    uint32_t at = put(b, HEWN_LANE_LENGTH, b->in[a][0], b->in[a][1], rounded(number));
+    b->in[at][2] = b->in[a][2];
+    b->tape->steps[at].input_count = step->input_count;
+    return at;
 }
 
 static uint32_t positive(builder *b, uint32_t a)
@@ -79,7 +92,7 @@ static uint32_t positive(builder *b, uint32_t a)
 
 static uint32_t over(builder *b, uint32_t a, double half)
 {
-    return with(b, HEWN_LANE_PLUS, one(b, HEWN_LANE_ABS, a), -half);
+    return with(b, HEWN_LANE_OVER, a, -half);
 }
 
 static uint32_t box(builder *b, const double *half, const uint32_t *in)
@@ -90,28 +103,37 @@ static uint32_t box(builder *b, const double *half, const uint32_t *in)
         outside[i] = positive(b, past[i]);
     }
     uint32_t most = two(b, HEWN_LANE_MAX, two(b, HEWN_LANE_MAX, past[0], past[1]), past[2]);
-    return two(b, HEWN_LANE_ADD, square_sum(b, outside, 3), with(b, HEWN_LANE_CEIL_AT, most, 0));
+    return two(b, HEWN_LANE_ADD, length_of(b, outside, 3), with(b, HEWN_LANE_CEIL_AT, most, 0));
 }
 
 static uint32_t cylinder(builder *b, const double *p, const uint32_t *in)
 {
-    uint32_t x = with(b, HEWN_LANE_PLUS, length2(b, in[0], in[2]), -p[0]), y = over(b, in[1], p[1]);
+    uint32_t x = plus(b, length2(b, in[0], in[2]), -p[0]), y = over(b, in[1], p[1]);
     uint32_t outside = length2(b, positive(b, x), positive(b, y));
     return two(b, HEWN_LANE_ADD, outside, with(b, HEWN_LANE_CEIL_AT, two(b, HEWN_LANE_MAX, x, y), 0));
 }
 
-/* Terms with a factor of zero are left out, as they are in shaders. */
+/* Terms with a factor of zero are left out, as they are in shaders; a factor of one changes no bit. */
 static uint32_t affine(builder *b, const double *factors, double last, const uint32_t *in)
 {
-    uint32_t sum = HEWN_NO_STEP;
+    float *held = b->tape->factors[b->factor_count];
+    uint32_t parts[HEWN_LANE_INPUTS] = {HEWN_NO_STEP, HEWN_NO_STEP, HEWN_NO_STEP}, count = 0;
     for (int i = 0; i < 3; i++) {
         float factor = rounded(factors[i]);
         if (factor == 0)
             continue;
-        uint32_t term = factor == 1 ? in[i] : with(b, HEWN_LANE_TIMES, in[i], factors[i]);
-        sum = sum == HEWN_NO_STEP ? term : two(b, HEWN_LANE_ADD, sum, term);
+        held[count] = factor;
+        parts[count++] = in[i];
     }
-    return sum == HEWN_NO_STEP ? number(b, last) : with(b, HEWN_LANE_PLUS, sum, last);
+    if (count == 0)
+        return number(b, last);
+    if (count == 1 && held[0] == 1)
+        return with(b, HEWN_LANE_PLUS, parts[0], last);
+    uint32_t at = put(b, HEWN_LANE_AFFINE, parts[0], parts[1], rounded(last));
+    b->in[at][2] = parts[2];
+    b->tape->steps[at].input_count = (uint8_t)count;
+    b->tape->steps[at].node = b->factor_count++;
+    return at;
 }
 
 /* --- arithmetic ----------------------------------------------------------------------------------------------------
@@ -141,6 +163,24 @@ static uint32_t difference(builder *b, uint32_t a, uint32_t c)
     return two(b, HEWN_LANE_SUB, a, c);
 }
 
+/* The root of a sum of two or three squares is a length. The squares stay where something else needs them. */
+static uint32_t root(builder *b, uint32_t a)
+{
+    const hewn_lane_step *steps = b->tape->steps;
+    uint32_t parts[HEWN_LANE_INPUTS], count = 0, last = a;
+    if (steps[a].kind == HEWN_LANE_ADD && steps[b->in[a][0]].kind == HEWN_LANE_ADD)
+        last = b->in[a][0];
+    if (steps[last].kind != HEWN_LANE_ADD)
+        return one(b, HEWN_LANE_SQRT, a);
+    const uint32_t terms[HEWN_LANE_INPUTS] = {b->in[last][0], b->in[last][1], b->in[a][1]};
+    for (uint32_t i = 0; i < (last == a ? 2U : 3U); i++) {
+        if (steps[terms[i]].kind != HEWN_LANE_SQUARE)
+            return one(b, HEWN_LANE_SQRT, a);
+        parts[count++] = b->in[terms[i]][0];
+    }
+    return length_of(b, parts, (int)count);
+}
+
 static uint32_t other(builder *b, const hewn_node_data *node, const uint32_t *in)
 {
     bool blend = node->op >= HEWN_OP_BLEND_QUADRATIC && node->op <= HEWN_OP_BLEND_EXPONENTIAL;
@@ -163,17 +203,17 @@ static uint32_t shape(builder *b, const hewn_node_data *node, const uint32_t *in
     switch (node->op) {
     case HEWN_OP_AFFINE: return affine(b, p, p[3], in);
     case HEWN_OP_PLANE: return affine(b, p, -p[3], in);
-    case HEWN_OP_SPHERE: return with(b, HEWN_LANE_PLUS, square_sum(b, in, 3), -p[0]);
+    case HEWN_OP_SPHERE: return plus(b, length_of(b, in, 3), -p[0]);
     case HEWN_OP_BOX: return box(b, p, in);
     case HEWN_OP_ROUNDED_BOX: return with(b, HEWN_LANE_PLUS, box(b, p, in), -p[3]);
     case HEWN_OP_TORUS: {
-        uint32_t ring = with(b, HEWN_LANE_PLUS, length2(b, in[0], in[2]), -p[0]);
-        return with(b, HEWN_LANE_PLUS, length2(b, ring, in[1]), -p[1]);
+        uint32_t ring = plus(b, length2(b, in[0], in[2]), -p[0]);
+        return plus(b, length2(b, ring, in[1]), -p[1]);
     }
     case HEWN_OP_CYLINDER: return cylinder(b, p, in);
     case HEWN_OP_CAPSULE: {
         uint32_t parts[3] = {in[0], positive(b, over(b, in[1], p[1])), in[2]};
-        return with(b, HEWN_LANE_PLUS, square_sum(b, parts, 3), -p[0]);
+        return plus(b, length_of(b, parts, 3), -p[0]);
     }
     default: return other(b, node, in);
     }
@@ -188,7 +228,7 @@ static uint32_t add_node(builder *b, const hewn_node_data *node, const uint32_t 
     case HEWN_OP_CONSTANT: return number(b, node->parameter[0]);
     case HEWN_OP_NEG: return one(b, HEWN_LANE_NEG, in[0]);
     case HEWN_OP_ABS: return one(b, HEWN_LANE_ABS, in[0]);
-    case HEWN_OP_SQRT: return one(b, HEWN_LANE_SQRT, in[0]);
+    case HEWN_OP_SQRT: return root(b, in[0]);
     case HEWN_OP_SQUARE: return one(b, HEWN_LANE_SQUARE, in[0]);
     case HEWN_OP_ADD: return sum(b, in[0], in[1], HEWN_LANE_PLUS, HEWN_LANE_ADD);
     case HEWN_OP_MUL: return sum(b, in[0], in[1], HEWN_LANE_TIMES, HEWN_LANE_MUL);
@@ -269,12 +309,13 @@ hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_
     builder b = {.tape = hewn_alloc(1, sizeof *b.tape + count * MOST_STEPS_A_NODE * sizeof *b.tape->steps),
                  .in = hewn_alloc(count * MOST_STEPS_A_NODE, sizeof *b.in)};
     hewn_node_data *others = hewn_alloc(count, sizeof *others);
+    hewn_lane_factors *factors = hewn_alloc_zero(count, sizeof *factors);
     uint32_t *places = hewn_alloc((size_t)root.id + 1, sizeof *places);
     hewn_result result = HEWN_OK;
     if (b.tape)
         *b.tape = (hewn_lane_tape){0};
-    if (b.tape && b.in && others && places) {
-        *b.tape = (hewn_lane_tape){.others = others};
+    if (b.tape && b.in && others && factors && places) {
+        *b.tape = (hewn_lane_tape){.others = others, .factors = factors};
         result = fill(&b, field, ids, count, places, error);
         if (result == HEWN_OK)
             result = hewn_lane_tape_settle(b.tape, b.in, places[root.id], out, error);
@@ -286,6 +327,7 @@ hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_
         (*out)->other_count = b.other_count;
     } else {
         free_others(others, b.other_count);
+        hewn_free(factors);
     }
     hewn_free(places);
     hewn_free(ids);
@@ -295,8 +337,10 @@ hewn_result hewn_lane_tape_create(const hewn_field *field, hewn_node root, hewn_
 
 void hewn_lane_tape_destroy(hewn_lane_tape **tape)
 {
-    if (*tape && (*tape)->owns)
+    if (*tape && (*tape)->owns) {
         free_others((*tape)->others, (*tape)->other_count);
+        hewn_free((*tape)->factors);
+    }
     if (*tape)
         hewn_free((*tape)->outlines);
     hewn_free(*tape);

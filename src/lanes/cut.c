@@ -110,7 +110,7 @@ static hewn_result make(cutting *cut, uint32_t last, uint32_t needed, hewn_lane_
     hewn_lane_tape *to = hewn_alloc(1, sizeof *to + needed * sizeof *to->steps);
     if (!to)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for the tape of a field");
-    *to = (hewn_lane_tape){.others = cut->from->others};
+    *to = (hewn_lane_tape){.others = cut->from->others, .factors = cut->from->factors};
     to->cuts = copy_steps(cut, last, to);
     hewn_result result = HEWN_OK;
     if (to->outline_count > 0 && !(to->outlines = hewn_lane_outlines_pack(cut->outlines, to->outline_count)))

@@ -75,6 +75,24 @@ static dual outline(const hewn_lane_outline *sides, dual x, dual y)
     return chain(v, away[0], x, away[1], y);
 }
 
+static dual length(const hewn_lane_step *step, const dual *in)
+{
+    dual sum = chain(in[0].v * in[0].v, 2 * in[0].v, in[0], 0, flat(0));
+    for (uint32_t k = 1; k < step->input_count; k++)
+        sum = chain(sum.v + in[k].v * in[k].v, 1, sum, 2 * in[k].v, in[k]);
+    float root = sqrtf(sum.v);
+    return chain(root + step->number, 0.5F / root, sum, 0, flat(0));
+}
+
+static dual affine(const float *factors, const hewn_lane_step *step, const dual *in)
+{
+    dual sum = chain(factors[0] * in[0].v, factors[0], in[0], 0, flat(0));
+    for (uint32_t k = 1; k < step->input_count; k++)
+        sum = chain(sum.v + factors[k] * in[k].v, 1, sum, factors[k], in[k]);
+    sum.v += step->number;
+    return sum;
+}
+
 static dual run_step(const hewn_lane_tape *tape, const hewn_lane_step *step, const dual *in)
 {
     dual a = in[0], b = in[1], none = flat(0);
@@ -91,6 +109,9 @@ static dual run_step(const hewn_lane_tape *tape, const hewn_lane_step *step, con
     case HEWN_LANE_ADD: return chain(a.v + b.v, 1, a, 1, b);
     case HEWN_LANE_SUB: return chain(a.v - b.v, 1, a, -1, b);
     case HEWN_LANE_MUL: return chain(a.v * b.v, b.v, a, a.v, b);
+    case HEWN_LANE_OVER: return chain(fabsf(a.v) + n, a.v < 0 ? -1 : 1, a, 0, none);
+    case HEWN_LANE_LENGTH: return length(step, in);
+    case HEWN_LANE_AFFINE: return affine(tape->factors[step->node], step, in);
     case HEWN_LANE_FLOOR_AT: return greatest(a, flat(n));
     case HEWN_LANE_CEIL_AT: return least(a, flat(n));
     case HEWN_LANE_MIN: return least(a, b);

@@ -15,8 +15,7 @@
 /* clang-format off */
 #define HEWN_LANE_LOOP(COUNT) \
     HEWN_LANE_APART \
-    for (uint32_t block = 0; block < (COUNT); block += HEWN_LANE_BLOCK) \
-        for (uint32_t i = block; i < block + HEWN_LANE_BLOCK; i++)
+    for (uint32_t i = 0; i < ((COUNT) & ~(HEWN_LANE_BLOCK - 1U)); i++)
 /* clang-format on */
 
 #endif

@@ -33,6 +33,9 @@ typedef enum hewn_lane_kind {
     HEWN_LANE_ADD,
     HEWN_LANE_SUB,
     HEWN_LANE_MUL,
+    HEWN_LANE_OVER,     /* |a| + n */
+    HEWN_LANE_LENGTH,   /* sqrt(a² + b² + c²) + n, of two or three */
+    HEWN_LANE_AFFINE,   /* f0 a + f1 b + f2 c + n, of one to three, see hewn_lane_step.node */
     HEWN_LANE_FLOOR_AT, /* max(a, n); the first of the kinds that can be cut */
     HEWN_LANE_CEIL_AT,  /* min(a, n) */
     HEWN_LANE_MIN,
@@ -43,6 +46,9 @@ typedef enum hewn_lane_kind {
     HEWN_LANE_OUTLINE /* the distance from an outline at (a, b), see hewn_lane_step.node */
 } hewn_lane_kind;
 
+/* Factors of an affine form, in the order of its registers. */
+typedef float hewn_lane_factors[HEWN_LANE_INPUTS];
+
 /* Small, since a picture needs many thousands of tapes. */
 typedef struct hewn_lane_step {
     uint8_t kind;
@@ -52,7 +58,8 @@ typedef struct hewn_lane_step {
     float number;
     union {
         float inverse; /* of the quadratic blend's size */
-        uint32_t node; /* of an operation of the field: which of `others`; of an outline: which of `outlines` */
+        uint32_t node; /* of an operation of the field: which of `others`; of an outline: which of `outlines`; of an
+                          affine form: which of `factors` */
     };
 } hewn_lane_step;
 
@@ -76,9 +83,10 @@ typedef struct hewn_lane_tape {
     uint32_t count;
     uint32_t registers;
     uint32_t cuts; /* steps that can be cut */
-    bool owns;     /* `others` is freed with it */
+    bool owns;     /* `others` and `factors` are freed with it */
     uint32_t other_count;
     hewn_node_data *others;
+    hewn_lane_factors *factors;
     uint32_t outline_count, side_count; /* sides of all outlines */
     hewn_lane_outline *outlines;        /* its own, in the order of their steps; NULL: none */
     hewn_lane_step steps[];             /* the last one is the field */

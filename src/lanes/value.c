@@ -43,6 +43,29 @@ static inline float blend(float a, float b, float size, float inverse)
     r[i] = (EXPRESSION);                                                                                               \
     break
 
+static HEWN_INTO_CLONES void length(const hewn_lane_step *step, const float *rows, float *restrict r, uint32_t count)
+{
+    const float *a = rows + (size_t)step->from[0] * HEWN_LANES, *b = rows + (size_t)step->from[1] * HEWN_LANES;
+    const float *c = rows + (size_t)step->from[2] * HEWN_LANES, n = step->number;
+    if (step->input_count == 2)
+        HEWN_LANE_LOOP(count)
+    r[i] = sqrtf(a[i] * a[i] + b[i] * b[i]) + n;
+    else HEWN_LANE_LOOP(count) r[i] = sqrtf(a[i] * a[i] + b[i] * b[i] + c[i] * c[i]) + n;
+}
+
+static HEWN_INTO_CLONES void affine(const hewn_lane_tape *tape, const hewn_lane_step *step, const float *rows,
+                                    float *restrict r, uint32_t count)
+{
+    const float *f = tape->factors[step->node], *a = rows + (size_t)step->from[0] * HEWN_LANES;
+    const float *b = rows + (size_t)step->from[1] * HEWN_LANES, *c = rows + (size_t)step->from[2] * HEWN_LANES;
+    const float f0 = f[0], f1 = f[1], f2 = f[2], n = step->number;
+    if (step->input_count == 1)
+        HEWN_LANE_LOOP(count)
+    r[i] = f0 * a[i] + n;
+    else if (step->input_count == 2) HEWN_LANE_LOOP(count) r[i] = f0 * a[i] + f1 * b[i] + n;
+    else HEWN_LANE_LOOP(count) r[i] = f0 * a[i] + f1 * b[i] + f2 * c[i] + n;
+}
+
 HEWN_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_lane_points *points, uint32_t count)
 {
     count &= ~(HEWN_LANE_BLOCK - 1U);
@@ -66,6 +89,9 @@ HEWN_CLONES static void run(const hewn_lane_tape *tape, float *rows, const hewn_
         case HEWN_LANE_ADD: EACH(a[i] + b[i]);
         case HEWN_LANE_SUB: EACH(a[i] - b[i]);
         case HEWN_LANE_MUL: EACH(a[i] * b[i]);
+        case HEWN_LANE_OVER: EACH(fabsf(a[i]) + n);
+        case HEWN_LANE_LENGTH: length(step, rows, r, count); break;
+        case HEWN_LANE_AFFINE: affine(tape, step, rows, r, count); break;
         case HEWN_LANE_FLOOR_AT: EACH(greatest(a[i], n));
         case HEWN_LANE_CEIL_AT: EACH(least(a[i], n));
         case HEWN_LANE_MIN: EACH(least(a[i], b[i]));

@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "render/octree.h"
+#include "render/slopes.h"
 #include "render/tracer.h"
 
 enum { PACK = 1024, TAPS = 5 };
@@ -16,8 +17,9 @@ typedef struct host_tracer {
     hewn_octree octree;
     hewn_box box;
     float slope;
-    float steepness; /* no slope is more: rays go on by values over that; 0: by interval bounds */
-    float slack;     /* rounding errors of values are below this */
+    float steepness;    /* no slope is more: rays go on by values over that; 0: by `slopes` */
+    hewn_slopes slopes; /* where these tell none, by interval bounds */
+    float slack;        /* rounding errors of values are below this */
 } host_tracer;
 
 /* A ray under way. */
@@ -25,9 +27,9 @@ typedef struct walker {
     const hewn_ray *ray;
     const hewn_cell *cell;
     float t, begin, end, stride, after;
-    float free, sure, lean; /* of the step that led to t, see trace_together() */
+    float free, sure, lean, steepness; /* of the step that led to t, see trace_together() */
     uint32_t steps;
-    bool met, ran_out, asks;
+    bool met, ran_out, asks, by_boxes;
 } walker;
 
 /* A point, or a ray, and whose tape it needs. */
@@ -284,7 +286,7 @@ static bool find_cell_of_sphere(crew *c, walker *w)
         bool empty = w->cell->state == HEWN_CELL_EMPTY, full = w->cell->state == HEWN_CELL_FULL;
         if (!empty && !full)
             return true;
-        if (!is_proven(w, empty ? w->cell->least / c->tracer->steepness : -FAR_AWAY)) {
+        if (!is_proven(w, empty ? w->cell->least / w->steepness : -FAR_AWAY)) {
             step_back(w);
             continue;
         }
@@ -299,12 +301,35 @@ static bool find_cell_of_sphere(crew *c, walker *w)
     return false;
 }
 
+/* How far beyond w->t the slope that a step counts on is known, and from there on by which kind of steps. */
+static float know_slope(const host_tracer *tracer, walker *w)
+{
+    float way = FAR_AWAY, p[3];
+    w->steepness = tracer->steepness;
+    if (w->steepness == 0 && tracer->slopes.bounds) {
+        place(w->ray, w->t, p);
+        w->steepness = hewn_slopes_at(&tracer->slopes, p, w->ray->along, &way);
+    }
+    w->by_boxes = w->steepness == 0;
+    return way;
+}
+
+/* Steps of the other kind begin: what is before is free. */
+static void begin_steps(const host_tracer *tracer, walker *w)
+{
+    const hewn_cell *root = tracer->octree.cells;
+    w->begin = w->t;
+    w->free = w->sure = 0;
+    w->lean = -1;
+    w->stride = w->by_boxes ? 0.05F * (root->hi[0] - root->lo[0]) : 0;
+}
+
 static void take_sphere(const crew *c, walker *w, float value)
 {
     const host_tracer *tracer = c->tracer;
-    float radius = (value - tracer->slack) / tracer->steepness, near_enough = enough(c->stage, w->t);
+    float near_enough = enough(c->stage, w->t);
     w->steps++;
-    if (!is_proven(w, value > 0 ? radius : -FAR_AWAY)) {
+    if (!is_proven(w, value > 0 ? (value - tracer->slack) / w->steepness : -FAR_AWAY)) {
         step_back(w);
         return;
     }
@@ -313,11 +338,17 @@ static void take_sphere(const crew *c, walker *w, float value)
         w->t = fmaxf(w->t - fminf(w->stride, near_enough), w->begin);
         return;
     }
+    float way = know_slope(tracer, w), radius = (value - tracer->slack) / w->steepness;
+    if (w->by_boxes) {
+        begin_steps(tracer, w);
+        return;
+    }
     if (w->stride > 0)
         w->lean = 0.7F * w->lean + 0.3F * ((radius - w->free) / w->stride);
     w->free = radius > 0 && radius < FAR_AWAY ? radius : 0;
     w->sure = fmaxf(w->free, near_enough);
     w->stride = fmaxf(2 * w->free / (1 - fminf(w->lean, 0.8F)), w->sure);
+    w->stride = fminf(w->stride, fmaxf(way, near_enough));
     w->t += w->stride;
 }
 
@@ -342,6 +373,34 @@ static void trace_together(crew *c, const hewn_lane_tape *tape, walker *const *g
         take_sphere(c, group[i], values[i]);
 }
 
+/* Those of a group that go by boxes and the others. */
+static void go_on(crew *c, const hewn_lane_tape *tape, const wanting *sorted, walker *const *active, uint32_t count)
+{
+    walker *by_boxes[HEWN_LANES], *by_spheres[HEWN_LANES];
+    uint32_t boxes = 0, spheres = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        walker *w = active[sorted[i].number];
+        if (w->by_boxes)
+            by_boxes[boxes++] = w;
+        else
+            by_spheres[spheres++] = w;
+    }
+    if (boxes > 0)
+        step_together(c, tape, by_boxes, boxes);
+    if (spheres > 0)
+        trace_together(c, tape, by_spheres, spheres);
+}
+
+static bool find_next(crew *c, walker *w)
+{
+    if (w->by_boxes && c->tracer->slopes.bounds) {
+        know_slope(c->tracer, w);
+        if (!w->by_boxes)
+            begin_steps(c->tracer, w);
+    }
+    return w->by_boxes ? find_cell(c, w) : find_cell_of_sphere(c, w);
+}
+
 /* Until all have met something, or ended, or taken `most` steps. */
 static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
 {
@@ -354,7 +413,7 @@ static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
         uint32_t kept = 0;
         for (uint32_t i = 0; i < left; i++) {
             walker *w = active[i];
-            if (w->met || !(c->tracer->steepness > 0 ? find_cell_of_sphere(c, w) : find_cell(c, w)))
+            if (w->met || !find_next(c, w))
                 continue;
             w->ran_out = w->steps >= most;
             w->met = w->ran_out || w->cell->state == HEWN_CELL_FULL;
@@ -366,14 +425,8 @@ static void march(crew *c, walker *walkers, uint32_t count, uint32_t most)
             c->items[i] = (wanting){active[i]->cell->owner, i};
         put_together(c, left);
         for (uint32_t first = 0, taken; first < left; first += taken) {
-            walker *group[HEWN_LANES];
             taken = run_of(sorted, first, left);
-            for (uint32_t i = 0; i < taken; i++)
-                group[i] = active[sorted[first + i].number];
-            if (c->tracer->steepness > 0)
-                trace_together(c, tape_of(c, sorted[first].owner), group, taken);
-            else
-                step_together(c, tape_of(c, sorted[first].owner), group, taken);
+            go_on(c, tape_of(c, sorted[first].owner), sorted + first, active, taken);
         }
     }
 }
@@ -383,8 +436,8 @@ static walker start(const crew *c, const hewn_ray *ray)
     const hewn_cell *root = c->tracer->octree.cells;
     walker w = {.ray = ray, .t = ray->begin, .end = ray->end};
     clip(root->lo, root->hi, ray, &w.t, &w.end);
-    w.begin = w.t;
-    w.stride = c->tracer->steepness > 0 ? 0 : 0.05F * (root->hi[0] - root->lo[0]);
+    know_slope(c->tracer, &w);
+    begin_steps(c->tracer, &w);
     return w;
 }
 
@@ -629,6 +682,7 @@ static void destroy(void *self)
 {
     host_tracer *tracer = self;
     hewn_octree_destroy(&tracer->octree);
+    hewn_slopes_destroy(&tracer->slopes);
     hewn_free(tracer);
 }
 
@@ -651,9 +705,12 @@ hewn_result hewn_tracer_on_host(const hewn_field *field, hewn_node root, const h
         far = fmax(far, fmax(fabs(box->lo[axis]), fabs(box->hi[axis])));
     if (steepness > 0 && steepness <= HEWN_STEEPEST * slope)
         tracer->steepness = nextafterf((float)steepness, INFINITY);
-    tracer->slack = tracer->steepness * (float)far * 0x1p-18F;
+    else if (result == HEWN_OK && tracer->octree.count > 0)
+        result = hewn_slopes_create(field, root, box, (double)tracer->octree.margin, HEWN_STEEPEST * slope,
+                                    &tracer->slopes, error);
+    tracer->slack = fmaxf(tracer->steepness, tracer->slopes.greatest) * (float)far * 0x1p-18F;
     if (result != HEWN_OK)
-        hewn_free(tracer);
+        destroy(tracer);
     else
         *out = (hewn_tracer){.self = tracer, .on_host = true, .trace = trace, .destroy = destroy};
     return result;

@@ -7,7 +7,10 @@
 #include "base/error.h"
 
 /* Cells are halved where tapes are long until they are 2^-6 of the box, and where they are short to 2^-4. */
-enum { LEVELS = 6, LEVELS_SHORT = 4, SHORT = 32, CHILDREN = 8, ACROSS = 1 << LEVELS };
+enum { LEVELS = 6, LEVELS_SHORT = 8, SHORT = 32, CHILDREN = 8, ACROSS = 1 << LEVELS };
+
+/* Of numbers in the lattice. */
+#define IS_MADE 0x80000000U
 
 /* The last two levels have most of the cells, and rays see few of them. */
 enum { LEVELS_AT_ONCE = LEVELS - 2 };
@@ -75,7 +78,7 @@ static hewn_result make_room(hewn_octree *octree, size_t first, size_t end, uint
     bool all = first >= octree->made;
     for (size_t i = first; i < end; i++)
         count += all || is_divided(&octree->cells[i], level) ? CHILDREN : 0;
-    if (count > UINT32_MAX)
+    if (count >= IS_MADE)
         return hewn_fail(error, HEWN_LIMIT, "the field has too many cells");
     HEWN_TRY(hewn_reserve((void **)&octree->cells, &octree->capacity, count, sizeof *octree->cells, error));
     for (size_t i = first; i < end; i++)
@@ -147,11 +150,11 @@ static hewn_result grow(hewn_octree *octree, const hewn_box *box, bool whole, he
 /* Enters a cell of level `level` whose first part of the lattice is `at`. */
 static void enter(hewn_octree *octree, uint32_t number, const uint32_t at[3], uint32_t level)
 {
-    uint32_t across = (uint32_t)ACROSS >> level;
+    uint32_t across = (uint32_t)ACROSS >> level, entry = number < octree->made ? number | IS_MADE : number;
     for (uint32_t z = at[2]; z < at[2] + across; z++)
         for (uint32_t y = at[1]; y < at[1] + across; y++)
             for (uint32_t x = at[0]; x < at[0] + across; x++)
-                octree->finest[x + ACROSS * (y + (size_t)ACROSS * z)] = number;
+                atomic_init(&octree->finest[x + ACROSS * (y + (size_t)ACROSS * z)], entry);
 }
 
 static void enter_below(hewn_octree *octree, uint32_t number, const uint32_t at[3], /* NOLINT(misc-no-recursion) */
@@ -220,25 +223,41 @@ static void see_divided(const hewn_octree *octree, hewn_lane_work *work, uint32_
         sched_yield();
 }
 
-const hewn_cell *hewn_octree_find(const hewn_octree *octree, const float p[3])
+/* Where in the lattice a point is: rounding takes it beyond its cell by less than the margin. */
+static atomic_uint *entry_at(const hewn_octree *octree, const float p[3])
 {
     uint32_t at[3];
-    for (int axis = 0; axis < 3; axis++) { /* rounding takes a point beyond its cell by less than the margin */
+    for (int axis = 0; axis < 3; axis++) {
         float place = (p[axis] - octree->cells[0].lo[axis]) * octree->scale[axis];
         at[axis] = place > 0 ? place < ACROSS - 1 ? (uint32_t)place : ACROSS - 1U : 0;
     }
-    return &octree->cells[octree->finest[at[0] + ACROSS * (at[1] + (size_t)ACROSS * at[2])]];
+    return &octree->finest[at[0] + ACROSS * (at[1] + (size_t)ACROSS * at[2])];
 }
 
+const hewn_cell *hewn_octree_find(const hewn_octree *octree, const float p[3])
+{
+    return &octree->cells[atomic_load_explicit(entry_at(octree, p), memory_order_relaxed) & ~IS_MADE];
+}
+
+/* Makes the cell of an entry, or finds that its parent stays whole. */
+static const hewn_cell *make_cell(const hewn_octree *octree, hewn_lane_work *work, uint32_t number)
+{
+    uint32_t parent = octree->cells[number].parent;
+    see_divided(octree, work, octree->cells[parent].parent);
+    if (!is_divided(&octree->cells[parent], LEVELS - 1))
+        return &octree->cells[parent];
+    see_divided(octree, work, parent);
+    return &octree->cells[number];
+}
+
+/* The release and acquire of an entry make what a cell holds seen by whoever reads its number. */
 const hewn_cell *hewn_octree_reach(const hewn_octree *octree, hewn_lane_work *work, const float p[3])
 {
-    const hewn_cell *cell = hewn_octree_find(octree, p);
-    if (cell < octree->cells + octree->made)
-        return cell;
-    const hewn_cell *parent = &octree->cells[cell->parent];
-    see_divided(octree, work, parent->parent);
-    if (!is_divided(parent, LEVELS - 1))
-        return parent;
-    see_divided(octree, work, cell->parent);
+    atomic_uint *entry = entry_at(octree, p);
+    uint32_t number = atomic_load_explicit(entry, memory_order_acquire);
+    if (number & IS_MADE)
+        return &octree->cells[number & ~IS_MADE];
+    const hewn_cell *cell = make_cell(octree, work, number);
+    atomic_store_explicit(entry, (uint32_t)(cell - octree->cells) | IS_MADE, memory_order_release);
     return cell;
 }

@@ -36,7 +36,8 @@ typedef struct hewn_octree {
     bool is_whole;         /* then each cell keeps its tape, else those whose children all have their own lose it */
     size_t made;           /* cells that are there from the start; the others only have places */
     atomic_uchar *divided; /* of each cell, whether it has made its children there */
-    uint32_t *finest;      /* the cell of each part of a lattice as fine as the smallest cells are, x fastest */
+    atomic_uint *finest;   /* the cell of each part of a lattice as fine as the smallest cells are, x fastest; marked
+                              where a cell that is made is there */
     float scale[3];        /* from coordinates to those of the lattice */
 } hewn_octree;
 

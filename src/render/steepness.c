@@ -7,6 +7,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "field/operate.h"
+#include "field/sampling.h"
 #include "render/tracer.h"
 
 /* What is known of a node: its values, its slope, and, where it is a linear form of x, y and z, that. Its gradient g
@@ -266,6 +267,12 @@ static void set_shape(steep *out, const hewn_node_data *node, const steep *in)
     case HEWN_OP_NOISE_CELLULAR:
         set_joint(out, in, 3);
         out->bound = times(hewn_op_noise_slope(node->op), out->bound);
+        break;
+    case HEWN_OP_SAMPLED:
+        set_joint(out, in, 3);
+        out->bound = times(
+            hewn_sampling_steepest(node->samples, (const hewn_interval[3]){in[0].range, in[1].range, in[2].range}),
+            out->bound);
         break;
     case HEWN_OP_PLANE:
         set_joint(out, in, 3);

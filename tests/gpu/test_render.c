@@ -39,6 +39,15 @@ static hewn_node make_shell(hewn_field *field, uint32_t seed)
     return thin;
 }
 
+/* Level to the left, and ever steeper to the right: rays go on by spheres in some parts of the box, by bounds in
+ * others.
+ */
+static hewn_node make_cliff(hewn_field *field, uint32_t seed)
+{
+    hewn_node rise = hewn_exp(field, scaled(field, hewn_x(field), 11 + seed));
+    return hewn_add(field, hewn_sphere(field, 0.8), scaled(field, rise, 0.001));
+}
+
 static hewn_node make_rippled_tree(hewn_field *field, uint32_t seed)
 {
     hewn_node ripple = scaled(field, hewn_cos(field, scaled(field, hewn_y(field), 9)), 0.05);
@@ -130,6 +139,7 @@ static void test_depths(void **state)
     check_field(make_twist, 0, false);
     check_field(make_steps, 1, false);
     check_field(make_shell, 1, false);
+    check_field(make_cliff, 1, false);
 }
 
 /* Every pixel of a plane is what the unpruned shader says. */

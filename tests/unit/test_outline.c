@@ -87,7 +87,7 @@ static void nearest_places(void **state)
     for (int round = 0; round < 1500; round++) {
         hewn_edge edge = {.curve = random_curve(&random, NULL), .colour = HEWN_WHITE};
         hewn_edge_prepare(&edge);
-        const hewn_shape shape = {&edge, 1};
+        const hewn_shape shape = {.edges = &edge, .count = 1};
         const double p[2] = {(2 * atlas_share(&random) - 0.5) * UNITS, (2 * atlas_share(&random) - 0.5) * UNITS};
         double least = INFINITY, found = fabs(hewn_shape_distance(&shape, p, 1e9)), reach;
         for (int i = 0; i <= PARTS; i++) {
@@ -186,7 +186,7 @@ static void check_borders(const hewn_glyph_outline *raw, const hewn_glyph_outlin
 static size_t count_exact(const hewn_glyph_outline *raw, const hewn_glyph_outline *resolved)
 {
     hewn_edge edges[64];
-    const hewn_shape shape = {edges, raw->count};
+    const hewn_shape shape = {.edges = edges, .count = raw->count};
     size_t exact = 0;
     for (size_t i = 0; i < raw->count; i++) {
         edges[i] = (hewn_edge){.curve = raw->curves[i], .colour = HEWN_WHITE};
