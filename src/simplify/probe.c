@@ -167,6 +167,17 @@ static uint32_t look_back(const simplify_samples *samples, uint32_t sample, cons
     return near;
 }
 
+/* The nearest of all. */
+static uint32_t find_nearest(const simplify_samples *samples, uint32_t sample, const double at[3],
+                             simplify_probe *probe)
+{
+    double least;
+    const uint32_t near =
+        hewn_bvh_nearest(&samples->bvh, &samples->input, at, samples->faces[samples->rings[sample]], &least);
+    probe->back = fmax(least, probe->back);
+    return near;
+}
+
 /* Whether a triangle of the input faces away from a normal. */
 static bool faces_away(const simplify_samples *samples, uint32_t near, const double normal[3])
 {
@@ -233,8 +244,10 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
             continue;
         }
         simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
-        if (!is_along(&samples->items[sample], normal))
-            probe->turned |= faces_away(samples, look_back(samples, sample, place, true, probe), normal);
+        if (probe->strict)
+            probe->turned += faces_away(samples, find_nearest(samples, sample, place, probe), normal);
+        else if (!is_along(&samples->items[sample], normal))
+            probe->turned += faces_away(samples, look_back(samples, sample, place, true, probe), normal);
     }
     return HEWN_OK;
 }
@@ -268,7 +281,8 @@ static void begin(simplify_probe *probe)
     probe->point_count = 0;
     probe->cleared[0] = probe->cleared[1] = HEWN_NONE;
     probe->back = probe->most = probe->before = probe->after = 0;
-    probe->turned = probe->cut = false;
+    probe->turned = 0;
+    probe->cut = false;
 }
 
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe)
@@ -284,6 +298,20 @@ hewn_result hewn_simplify_probe_move(const simplify_work *work, uint32_t v, cons
     begin(probe);
     HEWN_TRY(take_fan(work, v, HEWN_NONE, to, probe));
     return place_all(work, to, probe);
+}
+
+hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simplify_probe *probe)
+{
+    const uint32_t t = work->twin[h], c = work->tail[simplify_prev(h)];
+    const double *at = simplify_at(work, c);
+    double to_a[3], to_b[3], to_d[3];
+    simplify_between(at, simplify_at(work, work->tail[h]), to_a);
+    simplify_between(at, simplify_at(work, work->tail[t]), to_b);
+    simplify_between(at, simplify_at(work, work->tail[simplify_prev(t)]), to_d);
+    begin(probe);
+    HEWN_TRY(hewn_simplify_fan_add(&probe->fan, h / 3, to_a, to_d));
+    HEWN_TRY(hewn_simplify_fan_add(&probe->fan, t / 3, to_d, to_b));
+    return place_all(work, at, probe);
 }
 
 void hewn_simplify_probe_settle(const simplify_work *work, const simplify_probe *probe)

@@ -43,7 +43,8 @@ typedef struct simplify_probe {
     bool cut;    /* something is past `plenty` */
     double back; /* of the new vertex to the input */
     double before, after; /* sums of squares of all distances, by weights */
-    bool turned;          /* a triangle would face away from what is near its middle */
+    uint32_t turned;      /* triangles that would face away from what is near their middles */
+    bool strict;          /* set before: what is near is looked for in all of the input, not just around samples */
 } simplify_probe;
 void hewn_simplify_probe_release(simplify_probe *probe);
 
@@ -60,6 +61,9 @@ uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles);
 /* HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe);
 hewn_result hewn_simplify_probe_move(const simplify_work *work, uint32_t v, const double to[3], simplify_probe *probe);
+
+/* `h` is a half-edge that may be swapped. */
+hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simplify_probe *probe);
 
 /* Whether a triangle faces away from the input's triangle that is nearest to its middle. */
 bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face);
