@@ -28,9 +28,6 @@ static const double turned_factor = 1000;
  * samples follow, which edges go before others matters less than how many rounds there are. */
 static const double growth = 1.5, early_growth = 2.5;
 
-/* The distance that is aimed at, in means by cost. */
-static const double aim_factor = 1.35;
-
 /* --- one queue ---------------------------------------------------------------------------------------------------- */
 
 /* Edges that are collapsed in the order of their costs: all, or those inside one part. */
@@ -43,6 +40,11 @@ typedef struct edge_front {
     uint32_t removed;
     simplify_probe probe;
 } edge_front;
+
+static bool is_strict(const simplify_work *work)
+{
+    return work->samples && work->samples->strict;
+}
 
 static bool may_queue(const edge_front *front, uint32_t name)
 {
@@ -158,7 +160,7 @@ static hewn_result step(edge_front *front)
     if (!(work->flags[name] & SIMPLIFY_FRESH)) {
         const float cost = (float)plan.cost;
         work->key[name] = cost;
-        work->flags[name] = (uint8_t)((work->flags[name] & ~(SIMPLIFY_SLIM | SIMPLIFY_PROBED)) | SIMPLIFY_FRESH);
+        work->flags[name] = (uint8_t)((work->flags[name] & ~SIMPLIFY_RAISED) | SIMPLIFY_FRESH);
         if (cost > front->limit || isinf(cost))
             return HEWN_OK;
         if (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0])
@@ -302,6 +304,7 @@ static hewn_result run_parts(const part_list *parts, uint32_t wanted, uint32_t *
 #pragma omp parallel reduction(+ : sum) reduction(| : failed)
     {
         edge_front front = {.work = work, .inside = parts->inside, .limit = parts->limit};
+        front.probe.strict = is_strict(work);
 #pragma omp for schedule(dynamic)
         for (uint32_t p = 0; p < parts->count; p++) {
             const uint64_t share = all > 0 ? (uint64_t)wanted * parts->edges[p] / all : 0;
@@ -358,6 +361,7 @@ static hewn_result run_round(simplify_work *work, uint32_t target, bool early, f
 static hewn_result finish(simplify_work *work, uint32_t target)
 {
     edge_front front = {.work = work, .limit = FLT_MAX, .budget = work->live_faces - target};
+    front.probe.strict = is_strict(work);
     hewn_result result = HEWN_OK;
     for (uint32_t h = 0; h < 3 * work->face_count && result == HEWN_OK; h++) {
         if (simplify_name(work, h) != h)
@@ -392,7 +396,7 @@ static bool set_aim(simplify_work *work, uint32_t target)
     const double share = (double)work->live_faces / target;
     const double last = fmax((double)find_limit(work, work->live_faces - target, bins) * share * share, DBL_MIN);
     work->samples->price = last;
-    work->samples->aim = weight > 0 ? aim_factor * sqrt(last * target / (2 * weight)) : 1;
+    work->samples->aim = weight > 0 ? work->samples->aim_factor * sqrt(last * target / (2 * weight)) : 1;
     hewn_free(bins);
     return true;
 }

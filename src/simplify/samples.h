@@ -24,6 +24,8 @@ typedef struct simplify_samples {
     double *positions;       /* of the input's vertices, in coordinates of the work */
     hewn_bvh bvh;            /* of the input */
     hewn_triangle_view input;
+    double aim_factor; /* the distance that is aimed at, in means by cost */
+    bool strict;       /* collapses look in all of the input for what triangles turn away from */
     double aim, price; /* a collapse that comes to `aim` costs at least `price` */
 } simplify_samples;
 
@@ -53,6 +55,14 @@ void hewn_simplify_probe_release(simplify_probe *probe);
 hewn_result hewn_simplify_samples_make(const simplify_work *work, const hewn_polygons *input, uint32_t target,
                                        simplify_samples *out, hewn_error *error);
 void hewn_simplify_samples_release(simplify_samples *samples);
+
+/* Samples of `work` that may move by themselves; all else is shared with these. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_samples_copy(const simplify_work *work, simplify_samples *out, hewn_error *error);
+void hewn_simplify_samples_drop(simplify_samples *copy);
+
+/* How good the mesh is, less being better: by the mean and the greatest distance between samples and mesh and between
+ * points of the mesh and the input, and by how many triangles face away. */
+double hewn_simplify_score(const simplify_work *work);
 
 /* Triangles, in coordinates of the work, along the curve of hewn_simplify_order(), for hewn_bvh_build_along(). NULL:
  * out of memory. */

@@ -25,7 +25,8 @@ typedef struct mending {
 
 typedef struct mend_job {
     simplify_work *work;
-    double most; /* nothing comes further away */
+    double most;     /* nothing comes further away */
+    uint8_t *turned; /* one a triangle: it may face away */
     simplify_probe probe;
     mending best;
 } mend_job;
@@ -114,7 +115,10 @@ static hewn_result try_moves(mend_job *job, uint32_t face, uint32_t v)
     for (int axis = 0; axis < 3; axis++)
         step[axis] = length > 0 ? job->most * normal[axis] / length : 0;
     for (size_t i = 0; i < sizeof times / sizeof *times; i++)
-        HEWN_TRY(try_move(job, v, step, times[i], before));
+        for (int axis = 0; axis < 4; axis++) {
+            const double along[3] = {axis == 0 ? job->most : 0, axis == 1 ? job->most : 0, axis == 2 ? job->most : 0};
+            HEWN_TRY(try_move(job, v, axis < 3 ? along : step, times[i], before));
+        }
     simplify_between(simplify_at(work, v), work->samples->positions + 3 * (size_t)work->origins[v], step);
     HEWN_TRY(try_move(job, v, step, 0.5, before));
     return try_move(job, v, step, 1, before);
@@ -139,10 +143,28 @@ static hewn_result carry_out(mend_job *job)
         work->live_vertices--;
     }
     hewn_simplify_probe_settle(work, &job->probe);
+    for (uint32_t f = 0; f < job->probe.fan.count; f++)
+        job->turned[job->probe.fan.blocks[f / SIMPLIFY_FOUR].face[f % SIMPLIFY_FOUR]] = 1;
     return HEWN_OK;
 }
 
-/* The best of what can be done at the corners and edges of a triangle. */
+/* Edges at a corner. */
+static hewn_result try_edges(mend_job *job, uint32_t v)
+{
+    const simplify_work *work = job->work;
+    const uint32_t first = work->half[v];
+    uint32_t h = first;
+    do {
+        const uint32_t in = simplify_prev(h);
+        HEWN_TRY(try_collapse(job, simplify_name(work, h)));
+        if (work->twin[h] != HEWN_NONE)
+            HEWN_TRY(try_swap(job, h));
+        h = work->twin[in];
+    } while (h != HEWN_NONE && h != first);
+    return HEWN_OK;
+}
+
+/* The best of what can be done with a triangle's edges, else at its corners, else with all edges there. */
 static hewn_result mend(mend_job *job, uint32_t face)
 {
     const simplify_work *work = job->work;
@@ -155,18 +177,21 @@ static hewn_result mend(mend_job *job, uint32_t face)
     job->probe.plenty = INFINITY;
     job->probe.strict = true;
     for (uint32_t k = 0; k < 3; k++) {
+        HEWN_TRY(try_collapse(job, simplify_name(work, 3 * face + k)));
         if (work->twin[3 * face + k] != HEWN_NONE)
             HEWN_TRY(try_swap(job, 3 * face + k));
-        HEWN_TRY(try_moves(job, face, corner[k]));
-        HEWN_TRY(try_collapse(job, simplify_name(work, 3 * face + k)));
     }
+    for (uint32_t k = 0; k < 3 && job->best.kind == MEND_NOT; k++)
+        HEWN_TRY(try_moves(job, face, corner[k]));
+    for (uint32_t k = 0; k < 3 && job->best.kind == MEND_NOT; k++)
+        HEWN_TRY(try_edges(job, corner[k]));
     return job->best.kind == MEND_NOT ? HEWN_OK : carry_out(job);
 }
 
 hewn_result hewn_simplify_right(simplify_work *work, hewn_error *error)
 {
     mend_job job = {.work = work, .most = find_most(work->samples)};
-    uint8_t *turned = hewn_alloc(work->face_count, 1);
+    uint8_t *turned = job.turned = hewn_alloc(work->face_count, 1);
     hewn_result result = turned ? HEWN_OK : HEWN_OUT_OF_MEMORY;
 #pragma omp parallel for schedule(dynamic, 64) if (work->vertex_count > SIMPLIFY_FEW / 8)
     for (uint32_t f = 0; f < (turned ? work->face_count : 0); f++)
