@@ -38,13 +38,15 @@ static hewn_result run(simplify_work *work, uint32_t target, bool early, double 
 static const struct {
     double aim_factor;
     bool strict;
-} ways[] = {{1.35, false}, {1.35, true}, {1, true}, {1.8, true}, {1, false}, {0.7, true}};
-enum { WAYS = sizeof ways / sizeof *ways, MOST_TRIED = 600 };
+} ways[] = {{1.35, false}, {1.35, true}, {1, true}, {1.8, true}};
+enum { WAYS = sizeof ways / sizeof *ways, MOST_TRIED = 240, TWICE = 400 };
 
 static uint32_t count_ways(const simplify_work *work, uint32_t target)
 {
     const uint32_t count = MOST_TRIED / target;
-    return work->wedges || count < 1 ? 1 : count < WAYS ? count : WAYS;
+    if (work->wedges || target > TWICE)
+        return 1;
+    return count < 2 ? 2 : count < WAYS ? count : WAYS;
 }
 
 typedef struct balance_attempt {

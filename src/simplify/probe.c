@@ -1,3 +1,5 @@
+#include <string.h>
+
 #include "base/alloc.h"
 #include "base/error.h"
 #include "geom/nearest.h"
@@ -167,17 +169,6 @@ static uint32_t look_back(const simplify_samples *samples, uint32_t sample, cons
     return near;
 }
 
-/* The nearest of all. */
-static uint32_t find_nearest(const simplify_samples *samples, uint32_t sample, const double at[3],
-                             simplify_probe *probe)
-{
-    double least;
-    const uint32_t near =
-        hewn_bvh_nearest(&samples->bvh, &samples->input, at, samples->faces[samples->rings[sample]], &least);
-    probe->back = fmax(least, probe->back);
-    return near;
-}
-
 /* Whether a triangle of the input faces away from a normal. */
 static bool faces_away(const simplify_samples *samples, uint32_t near, const double normal[3])
 {
@@ -229,6 +220,7 @@ static bool is_along(const simplify_sample *sample, const double normal[3])
 static hewn_result look_at_marks(const simplify_samples *samples, const double at[3], simplify_probe *probe)
 {
     HEWN_TRY(list_marks(probe));
+    memcpy(probe->place, at, sizeof probe->place);
     hewn_simplify_find_marks(probe->points, probe->point_count, probe->blocks,
                              (probe->mark_count + SIMPLIFY_FOUR - 1) / SIMPLIFY_FOUR);
     for (size_t i = 0; i < probe->mark_count; i++) {
@@ -244,12 +236,32 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
             continue;
         }
         simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
-        if (probe->strict)
-            probe->turned += faces_away(samples, find_nearest(samples, sample, place, probe), normal);
-        else if (!is_along(&samples->items[sample], normal))
-            probe->turned += faces_away(samples, look_back(samples, sample, place, true, probe), normal);
+        if (!is_along(&samples->items[sample], normal))
+            probe->turned |= faces_away(samples, look_back(samples, sample, place, true, probe), normal);
     }
     return HEWN_OK;
+}
+
+uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe)
+{
+    const simplify_samples *samples = work->samples;
+    uint32_t turned = 0;
+    for (size_t i = 0; i < probe->mark_count; i++) {
+        const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
+        const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
+        const uint32_t sample = probe->points[block->nearest[lane]].sample;
+        double place[3], normal[3], distance;
+        if (probe->marks[i].kind != MARK_MIDDLE)
+            continue;
+        simplify_fan_vector(block->at[0], lane, place);
+        for (int axis = 0; axis < 3; axis++)
+            place[axis] += probe->place[axis];
+        simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
+        const uint32_t near = hewn_bvh_nearest(&samples->bvh, &samples->input, place,
+                                               samples->faces[samples->rings[sample]], &distance);
+        turned += faces_away(samples, near, normal);
+    }
+    return turned;
 }
 
 static hewn_result place_all(const simplify_work *work, const double at[3], simplify_probe *probe)
@@ -278,11 +290,10 @@ static hewn_result place_all(const simplify_work *work, const double at[3], simp
 static void begin(simplify_probe *probe)
 {
     probe->fan.count = 0;
-    probe->point_count = 0;
+    probe->point_count = probe->mark_count = 0;
     probe->cleared[0] = probe->cleared[1] = HEWN_NONE;
     probe->back = probe->most = probe->before = probe->after = 0;
-    probe->turned = 0;
-    probe->cut = false;
+    probe->turned = probe->cut = false;
 }
 
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe)

@@ -41,11 +41,6 @@ typedef struct edge_front {
     simplify_probe probe;
 } edge_front;
 
-static bool is_strict(const simplify_work *work)
-{
-    return work->samples && work->samples->strict;
-}
-
 static bool may_queue(const edge_front *front, uint32_t name)
 {
     const simplify_work *work = front->work;
@@ -110,6 +105,20 @@ static bool grows_dear(edge_front *front, uint32_t name)
            (cost > front->limit || (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0]));
 }
 
+/* An edge that is about to collapse: whether that turns a triangle away from what is nearest in all of the input, which
+ * costs as much as if it did from what is near among samples. */
+static bool turns_away(edge_front *front, uint32_t name)
+{
+    simplify_work *work = front->work;
+    if (!work->samples->strict || work->flags[name] & SIMPLIFY_STRICT)
+        return false;
+    work->flags[name] |= SIMPLIFY_STRICT;
+    if (front->probe.turned > 0 || hewn_simplify_probe_turns(work, &front->probe) == 0)
+        return false;
+    work->key[name] = (float)fmin(turned_factor * fmax((double)work->key[name], work->samples->price), FLT_MAX);
+    return true;
+}
+
 /* Looks what becomes of samples. `*dear`: others are cheaper, the edge's key has grown. Else samples go where they will
  * be. Edges of a complex take theirs along, whatever becomes of them. */
 static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool *dear)
@@ -141,6 +150,9 @@ static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool
             if (*dear)
                 return HEWN_OK;
         }
+        *dear = !tied && turns_away(front, name);
+        if (*dear)
+            return HEWN_OK;
         hewn_simplify_probe_settle(work, &front->probe);
     }
     return HEWN_OK;
@@ -304,7 +316,6 @@ static hewn_result run_parts(const part_list *parts, uint32_t wanted, uint32_t *
 #pragma omp parallel reduction(+ : sum) reduction(| : failed)
     {
         edge_front front = {.work = work, .inside = parts->inside, .limit = parts->limit};
-        front.probe.strict = is_strict(work);
 #pragma omp for schedule(dynamic)
         for (uint32_t p = 0; p < parts->count; p++) {
             const uint64_t share = all > 0 ? (uint64_t)wanted * parts->edges[p] / all : 0;
@@ -361,7 +372,6 @@ static hewn_result run_round(simplify_work *work, uint32_t target, bool early, f
 static hewn_result finish(simplify_work *work, uint32_t target)
 {
     edge_front front = {.work = work, .limit = FLT_MAX, .budget = work->live_faces - target};
-    front.probe.strict = is_strict(work);
     hewn_result result = HEWN_OK;
     for (uint32_t h = 0; h < 3 * work->face_count && result == HEWN_OK; h++) {
         if (simplify_name(work, h) != h)

@@ -45,8 +45,8 @@ typedef struct simplify_probe {
     bool cut;    /* something is past `plenty` */
     double back; /* of the new vertex to the input */
     double before, after; /* sums of squares of all distances, by weights */
-    uint32_t turned;      /* triangles that would face away from what is near their middles */
-    bool strict;          /* set before: what is near is looked for in all of the input, not just around samples */
+    bool turned;          /* a triangle would face away from what is near its middle, among samples */
+    double place[3];      /* that of the fan */
 } simplify_probe;
 void hewn_simplify_probe_release(simplify_probe *probe);
 
@@ -71,6 +71,10 @@ uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles);
 /* HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe);
 hewn_result hewn_simplify_probe_move(const simplify_work *work, uint32_t v, const double to[3], simplify_probe *probe);
+
+/* After one of these, if it was not cut: how many triangles would face away from what is nearest to their middles in all
+ * of the input, not just around the nearest sample. 0 where there are no samples. */
+uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe);
 
 /* `h` is a half-edge that may be swapped. */
 hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simplify_probe *probe);

@@ -51,9 +51,12 @@ static void keep_better(mend_job *job, const mending *way, uint32_t before)
 {
     const simplify_probe *probe = &job->probe;
     const double far = fmax(probe->most, probe->back);
-    if (probe->turned >= before || !(far <= job->most))
+    if (before == 0 || probe->cut || !(far <= job->most) || (before == job->best.fewer && far >= job->best.far))
         return;
-    const uint32_t fewer = before - probe->turned;
+    const uint32_t after = hewn_simplify_probe_turns(job->work, probe);
+    if (after >= before)
+        return;
+    const uint32_t fewer = before - after;
     if (fewer < job->best.fewer || (fewer == job->best.fewer && far >= job->best.far))
         return;
     job->best = *way;
@@ -130,6 +133,7 @@ static hewn_result carry_out(mend_job *job)
 {
     simplify_work *work = job->work;
     const mending *way = &job->best;
+    job->probe.plenty = INFINITY;
     if (way->kind == MEND_SWAP) {
         HEWN_TRY(hewn_simplify_probe_swap(work, way->at, &job->probe));
         hewn_simplify_swap(work, way->at);
@@ -174,8 +178,7 @@ static hewn_result mend(mend_job *job, uint32_t face)
             return HEWN_OK;
     job->best = (mending){.kind = MEND_NOT};
     job->probe.enough = 0;
-    job->probe.plenty = INFINITY;
-    job->probe.strict = true;
+    job->probe.plenty = job->most;
     for (uint32_t k = 0; k < 3; k++) {
         HEWN_TRY(try_collapse(job, simplify_name(work, 3 * face + k)));
         if (work->twin[3 * face + k] != HEWN_NONE)

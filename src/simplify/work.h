@@ -40,7 +40,8 @@ enum {
     SIMPLIFY_QUEUED = 4,  /* waits in a queue */
     SIMPLIFY_SLIM = 8,    /* its collapse makes a sliver, which its key was raised for */
     SIMPLIFY_PROBED = 16, /* its key was raised to what the collapse does to samples, if that is more */
-    SIMPLIFY_RAISED = SIMPLIFY_SLIM | SIMPLIFY_PROBED
+    SIMPLIFY_STRICT = 32, /* its key was raised if the collapse turns a triangle away from the input */
+    SIMPLIFY_RAISED = SIMPLIFY_SLIM | SIMPLIFY_PROBED | SIMPLIFY_STRICT
 };
 
 typedef struct simplify_work {
