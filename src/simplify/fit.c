@@ -144,7 +144,7 @@ static void find_inside(const fitting *job)
             const uint32_t in = simplify_prev(h);
             job->inside[v] = simplify_head(work, h) / PART == v / PART && work->tail[in] / PART == v / PART;
             h = work->twin[in];
-            if (h == first)
+            if (h == HEWN_NONE || h == first)
                 break;
         }
     }
