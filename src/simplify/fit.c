@@ -14,8 +14,9 @@ static const double far_weight = 0.2, stay_share = 0.02, far_share = 0.7;
 /* What is left of the sum of squares where an edge is swapped. */
 static const double swap_gain = 0.98;
 
-/* Vertices of a part, and how often all are moved. */
-enum { PART = 512, SWEEPS = 2 };
+/* Vertices of a part, how often all are moved, and the most triangles whose edges are swapped: where there are many, that
+ * takes too long for what it brings. */
+enum { PART = 512, SWEEPS = 2, MOST_SWAPPED = 2500 };
 
 typedef struct fitting {
     simplify_work *work;
@@ -174,7 +175,7 @@ static bool is_edge(const simplify_work *work, uint32_t h)
 /* Edges and vertices inside a part, or those inside none. */
 static hewn_result fit_edges(const fitting *job, uint32_t begin, uint32_t end, bool inside, simplify_probe *probe)
 {
-    for (uint32_t h = 3 * begin; h < 3 * end; h++)
+    for (uint32_t h = 3 * begin; h < 3 * end && job->work->face_count <= MOST_SWAPPED; h++)
         if (is_edge(job->work, h) && is_edge_inside(job, h) == inside)
             HEWN_TRY(fit_edge(job, h, probe));
     return HEWN_OK;

@@ -18,7 +18,7 @@
 #define SIMPLIFY_GONE 0xFFFFFFFEu
 
 /* Meshes of fewer vertices are done by one thread: waking others takes longer. */
-enum { SIMPLIFY_FEW = 8000 };
+enum { SIMPLIFY_FEW = 4000 };
 
 /* The most fans of a vertex of a complex that may move; others stay. */
 enum { SIMPLIFY_MOST_TIED = 16 };
