@@ -14,8 +14,8 @@ static const double far_weight = 0.2, stay_share = 0.02, far_share = 0.7;
 /* What is left of the sum of squares where an edge is swapped. */
 static const double swap_gain = 0.98;
 
-/* Vertices of a part, how often all are moved, and the most triangles whose edges are swapped: where there are many, that
- * takes too long for what it brings. */
+/* Vertices of a part, how often all are moved, and the most triangles whose edges are swapped: where there are many,
+ * that takes too long for what it brings. */
 enum { PART = 512, SWEEPS = 2, MOST_SWAPPED = 2500 };
 
 typedef struct fitting {

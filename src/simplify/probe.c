@@ -257,8 +257,8 @@ uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_pro
         for (int axis = 0; axis < 3; axis++)
             place[axis] += probe->place[axis];
         simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
-        const uint32_t near = hewn_bvh_nearest(&samples->bvh, &samples->input, place,
-                                               samples->faces[samples->rings[sample]], &distance);
+        const uint32_t near =
+            hewn_bvh_nearest(&samples->bvh, &samples->input, place, samples->faces[samples->rings[sample]], &distance);
         turned += faces_away(samples, near, normal);
     }
     return turned;

@@ -72,8 +72,8 @@ uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles);
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe);
 hewn_result hewn_simplify_probe_move(const simplify_work *work, uint32_t v, const double to[3], simplify_probe *probe);
 
-/* After one of these, if it was not cut: how many triangles would face away from what is nearest to their middles in all
- * of the input, not just around the nearest sample. 0 where there are no samples. */
+/* After one of these, if it was not cut: how many triangles would face away from what is nearest to their middles in
+ * all of the input, not just around the nearest sample. 0 where there are no samples. */
 uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe);
 
 /* `h` is a half-edge that may be swapped. */

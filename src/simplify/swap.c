@@ -51,8 +51,7 @@ static double shape_of(const simplify_work *work, uint32_t a, uint32_t b, uint32
 
 static bool turns_little(const double normal[3], const double mean[3])
 {
-    return simplify_dot(normal, mean) >=
-           least_cosine * sqrt(simplify_dot(normal, normal) * simplify_dot(mean, mean));
+    return simplify_dot(normal, mean) >= least_cosine * sqrt(simplify_dot(normal, normal) * simplify_dot(mean, mean));
 }
 
 /* Whether a new triangle faces where the surface that became its corners did. */
@@ -68,7 +67,8 @@ static bool faces_along(const simplify_work *work, const double normal[3], uint3
 static bool is_sound(const simplify_work *work, const swap_corners *at)
 {
     double old[2][3], new[2][3], mean[3];
-    const double before = fmin(shape_of(work, at->a, at->b, at->c, old[0]), shape_of(work, at->b, at->a, at->d, old[1]));
+    const double before =
+        fmin(shape_of(work, at->a, at->b, at->c, old[0]), shape_of(work, at->b, at->a, at->d, old[1]));
     const double after = fmin(shape_of(work, at->c, at->a, at->d, new[0]), shape_of(work, at->d, at->b, at->c, new[1]));
     for (int axis = 0; axis < 3; axis++)
         mean[axis] = old[0][axis] + old[1][axis];
