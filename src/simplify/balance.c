@@ -34,7 +34,8 @@ static hewn_result run(simplify_work *work, uint32_t target, bool early, double 
 /* --- attempts ----------------------------------------------------------------------------------------------------- */
 
 /* Where few triangles are wanted, much depends on chance: the last collapses are tried in several ways, and the best
- * result stays. The first is the usual one. So many triangles of results are made at most. */
+ * result stays. The first is the usual one. There are as many ways as make MOST_TRIED triangles together, but two, one
+ * for each of two cores, up to TWICE. */
 static const struct {
     double aim_factor;
     bool strict;
