@@ -260,3 +260,36 @@ void hewn_simplify_release(simplify_work *work)
     hewn_free(work->tie);
     *work = (simplify_work){0};
 }
+
+/* A copy of an array; NULL of NULL, and where memory is out. */
+static void *copy_of(const void *array, size_t count, size_t size, bool *failed)
+{
+    void *out = array ? hewn_alloc(count, size) : NULL;
+    if (out)
+        memcpy(out, array, count * size);
+    *failed |= array && !out;
+    return out;
+}
+
+hewn_result hewn_simplify_copy(const simplify_work *work, simplify_work *out, hewn_error *error)
+{
+    const size_t verts = work->vertex_count, faces = work->face_count, halves = 3 * faces;
+    bool failed = false;
+    *out = *work;
+    out->positions = copy_of(work->positions, 3 * verts, sizeof *work->positions, &failed);
+    out->quadrics = copy_of(work->quadrics, verts, sizeof *work->quadrics, &failed);
+    out->facing = copy_of(work->facing, 3 * verts, sizeof *work->facing, &failed);
+    out->half = copy_of(work->half, verts, sizeof *work->half, &failed);
+    out->rank = copy_of(work->rank, verts, sizeof *work->rank, &failed);
+    out->origins = copy_of(work->origins, verts, sizeof *work->origins, &failed);
+    out->tie = copy_of(work->tie, verts, sizeof *work->tie, &failed);
+    out->limit = copy_of(work->limit, verts, sizeof *work->limit, &failed);
+    out->tail = copy_of(work->tail, halves, sizeof *work->tail, &failed);
+    out->twin = copy_of(work->twin, halves, sizeof *work->twin, &failed);
+    out->key = copy_of(work->key, halves, sizeof *work->key, &failed);
+    out->flags = copy_of(work->flags, halves, sizeof *work->flags, &failed);
+    out->face_origins = copy_of(work->face_origins, faces, sizeof *work->face_origins, &failed);
+    out->wedge = copy_of(work->wedge, halves, sizeof *work->wedge, &failed);
+    out->into = copy_of(work->into, work->input_count, sizeof *work->into, &failed);
+    return failed ? hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying") : HEWN_OK;
+}

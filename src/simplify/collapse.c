@@ -378,8 +378,7 @@ static void close_face(simplify_work *work, uint32_t h, uint32_t *out)
     const uint32_t name_next = simplify_name(work, next), name_prev = simplify_name(work, prev);
     const uint8_t feature = (work->flags[name_next] | work->flags[name_prev]) & SIMPLIFY_FEATURE;
     const float one = work->key[name_next], two = work->key[name_prev];
-    const uint8_t raised = SIMPLIFY_SLIM | SIMPLIFY_PROBED;
-    const bool bounds = !(work->flags[name_next] & raised) && !(work->flags[name_prev] & raised);
+    const bool bounds = !(work->flags[name_next] & SIMPLIFY_RAISED) && !(work->flags[name_prev] & SIMPLIFY_RAISED);
     const float key = isinf(one) ? two : isinf(two) ? one : bounds ? fmaxf(one, two) : fminf(one, two);
     if (across_next != HEWN_NONE)
         work->twin[across_next] = across_prev;

@@ -5,18 +5,25 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "simplify/collapse.h"
+#include "simplify/swap.h"
 
 /* What is further away counts more: by this times the square of how many times the mean it is. How much a vertex stays
  * where it is, as a share of what pulls it. From this share of the greatest distance on, a place must not get worse. */
 static const double far_weight = 0.2, stay_share = 0.02, far_share = 0.7;
 
-/* Vertices of a part, and how often all are moved. */
-enum { PART = 512, SWEEPS = 2 };
+/* What is left of the sum of squares where an edge is swapped. */
+static const double swap_gain = 0.98;
+
+/* Vertices of a part, how often all are moved, and the most triangles whose edges are swapped: where there are many,
+ * that takes too long for what it brings. */
+enum { PART = 512, SWEEPS = 2, MOST_SWAPPED = 2500 };
 
 typedef struct fitting {
     simplify_work *work;
     double mean, most;
     uint8_t *inside; /* one a vertex: all its neighbours are of the same part */
+    uint32_t parts;
+    uint32_t *faces; /* the first triangle of each part, by its first vertex; and one more */
 } fitting;
 
 /* Samples of one triangle pull its corner `v` along the normal, each by its share of the sample. */
@@ -87,6 +94,33 @@ static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *pr
     return HEWN_OK;
 }
 
+/* The edge runs the other way where that brings samples nearer and takes nothing far away. */
+static hewn_result fit_edge(const fitting *job, uint32_t h, simplify_probe *probe)
+{
+    simplify_work *work = job->work;
+    if (!hewn_simplify_may_swap(work, h))
+        return HEWN_OK;
+    probe->enough = far_share * job->most;
+    probe->plenty = INFINITY;
+    HEWN_TRY(hewn_simplify_probe_swap(work, h, probe));
+    if (probe->turned || probe->after >= swap_gain * probe->before ||
+        fmax(probe->most, probe->back) > far_share * job->most)
+        return HEWN_OK;
+    hewn_simplify_swap(work, h);
+    hewn_simplify_probe_settle(work, probe);
+    return HEWN_OK;
+}
+
+/* Whether all four corners of an edge's triangles lie inside a part. */
+static bool is_edge_inside(const fitting *job, uint32_t h)
+{
+    const simplify_work *work = job->work;
+    const uint32_t t = work->twin[h];
+    const uint8_t *inside = job->inside;
+    return inside[work->tail[h]] && inside[work->tail[t]] && inside[work->tail[simplify_prev(h)]] &&
+           inside[work->tail[simplify_prev(t)]];
+}
+
 static void find_gaps(fitting *job)
 {
     const simplify_samples *samples = job->work->samples;
@@ -106,37 +140,75 @@ static void find_inside(const fitting *job)
     for (uint32_t v = 0; v < work->vertex_count; v++) {
         const uint32_t first = work->half[v];
         uint32_t h = first;
-        job->inside[v] = work->rank[v] == SIMPLIFY_SMOOTH;
+        job->inside[v] = work->rank[v] != SIMPLIFY_APART;
         while (job->inside[v]) {
             const uint32_t in = simplify_prev(h);
             job->inside[v] = simplify_head(work, h) / PART == v / PART && work->tail[in] / PART == v / PART;
             h = work->twin[in];
-            if (h == first)
+            if (h == HEWN_NONE || h == first)
                 break;
         }
     }
 }
 
-/* Those inside parts first, which touch nothing of other parts; then, one after the other, those between. */
-static hewn_result sweep(const fitting *job)
+/* Triangles are in the order of their first vertices, so those of a part are together. */
+static void split(fitting *job)
 {
     const simplify_work *work = job->work;
-    const uint32_t parts = (work->vertex_count + PART - 1) / PART;
+    uint32_t part = 0;
+    for (uint32_t f = 0; f < work->face_count; f++) {
+        const uint32_t *corner = work->tail + 3 * (size_t)f;
+        uint32_t least = corner[0] < corner[1] ? corner[0] : corner[1];
+        least = corner[2] < least ? corner[2] : least;
+        while (part <= least / PART)
+            job->faces[part++] = f;
+    }
+    while (part <= job->parts)
+        job->faces[part++] = work->face_count;
+}
+
+static bool is_edge(const simplify_work *work, uint32_t h)
+{
+    return work->twin[h] != HEWN_NONE && h < work->twin[h];
+}
+
+/* Edges and vertices inside a part, or those inside none. */
+static hewn_result fit_edges(const fitting *job, uint32_t begin, uint32_t end, bool inside, simplify_probe *probe)
+{
+    for (uint32_t h = 3 * begin; h < 3 * end && job->work->face_count <= MOST_SWAPPED; h++)
+        if (is_edge(job->work, h) && is_edge_inside(job, h) == inside)
+            HEWN_TRY(fit_edge(job, h, probe));
+    return HEWN_OK;
+}
+
+static hewn_result fit_vertices(const fitting *job, uint32_t begin, uint32_t end, bool inside, simplify_probe *probe)
+{
+    const simplify_work *work = job->work;
+    for (uint32_t v = begin; v < work->vertex_count && v < end; v++)
+        if (work->rank[v] == SIMPLIFY_SMOOTH && job->inside[v] == inside)
+            HEWN_TRY(fit_vertex(job, v, probe));
+    return HEWN_OK;
+}
+
+/* Those inside parts first, which touch nothing of other parts; then, one after the other, those between. Edges between
+ * parts join them when they are swapped, so they only are where no sweep follows. */
+static hewn_result sweep(const fitting *job, bool last)
+{
+    const uint32_t *faces = job->faces;
     int failed = 0;
 #pragma omp parallel reduction(| : failed)
     {
         simplify_probe probe = {0};
 #pragma omp for schedule(dynamic)
-        for (uint32_t p = 0; p < parts; p++)
-            for (uint32_t v = p * PART; v < work->vertex_count && v < (p + 1) * PART; v++)
-                if (job->inside[v])
-                    failed |= fit_vertex(job, v, &probe) != HEWN_OK;
+        for (uint32_t p = 0; p < job->parts; p++) {
+            failed |= fit_edges(job, faces[p], faces[p + 1], true, &probe) != HEWN_OK;
+            failed |= fit_vertices(job, p * PART, (p + 1) * PART, true, &probe) != HEWN_OK;
+        }
         hewn_simplify_probe_release(&probe);
     }
     simplify_probe probe = {0};
-    for (uint32_t v = 0; v < work->vertex_count; v++)
-        if (!job->inside[v] && work->rank[v] == SIMPLIFY_SMOOTH)
-            failed |= fit_vertex(job, v, &probe) != HEWN_OK;
+    failed |= last && fit_edges(job, 0, job->work->face_count, false, &probe) != HEWN_OK;
+    failed |= fit_vertices(job, 0, job->work->vertex_count, false, &probe) != HEWN_OK;
     hewn_simplify_probe_release(&probe);
     return failed ? HEWN_OUT_OF_MEMORY : HEWN_OK;
 }
@@ -144,14 +216,19 @@ static hewn_result sweep(const fitting *job)
 hewn_result hewn_simplify_fit(simplify_work *work, hewn_error *error)
 {
     fitting job = {.work = work, .inside = hewn_alloc(work->vertex_count, 1)};
-    hewn_result result = job.inside ? HEWN_OK : HEWN_OUT_OF_MEMORY;
-    if (result == HEWN_OK)
+    job.parts = (work->vertex_count + PART - 1) / PART;
+    job.faces = hewn_alloc((size_t)job.parts + 1, sizeof *job.faces);
+    hewn_result result = job.inside && job.faces ? HEWN_OK : HEWN_OUT_OF_MEMORY;
+    if (result == HEWN_OK) {
         find_inside(&job);
+        split(&job);
+    }
     for (int i = 0; i < SWEEPS && result == HEWN_OK; i++) {
         find_gaps(&job);
         if (job.mean > 0)
-            result = sweep(&job);
+            result = sweep(&job, i + 1 == SWEEPS);
     }
     hewn_free(job.inside);
+    hewn_free(job.faces);
     return result == HEWN_OK ? HEWN_OK : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
 }

@@ -1,3 +1,5 @@
+#include <string.h>
+
 #include "base/alloc.h"
 #include "base/error.h"
 #include "geom/nearest.h"
@@ -218,6 +220,7 @@ static bool is_along(const simplify_sample *sample, const double normal[3])
 static hewn_result look_at_marks(const simplify_samples *samples, const double at[3], simplify_probe *probe)
 {
     HEWN_TRY(list_marks(probe));
+    memcpy(probe->place, at, sizeof probe->place);
     hewn_simplify_find_marks(probe->points, probe->point_count, probe->blocks,
                              (probe->mark_count + SIMPLIFY_FOUR - 1) / SIMPLIFY_FOUR);
     for (size_t i = 0; i < probe->mark_count; i++) {
@@ -237,6 +240,28 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
             probe->turned |= faces_away(samples, look_back(samples, sample, place, true, probe), normal);
     }
     return HEWN_OK;
+}
+
+uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe)
+{
+    const simplify_samples *samples = work->samples;
+    uint32_t turned = 0;
+    for (size_t i = 0; i < probe->mark_count; i++) {
+        const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
+        const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
+        const uint32_t sample = probe->points[block->nearest[lane]].sample;
+        double place[3], normal[3], distance;
+        if (probe->marks[i].kind != MARK_MIDDLE)
+            continue;
+        simplify_fan_vector(block->at[0], lane, place);
+        for (int axis = 0; axis < 3; axis++)
+            place[axis] += probe->place[axis];
+        simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
+        const uint32_t near =
+            hewn_bvh_nearest(&samples->bvh, &samples->input, place, samples->faces[samples->rings[sample]], &distance);
+        turned += faces_away(samples, near, normal);
+    }
+    return turned;
 }
 
 static hewn_result place_all(const simplify_work *work, const double at[3], simplify_probe *probe)
@@ -265,7 +290,7 @@ static hewn_result place_all(const simplify_work *work, const double at[3], simp
 static void begin(simplify_probe *probe)
 {
     probe->fan.count = 0;
-    probe->point_count = 0;
+    probe->point_count = probe->mark_count = 0;
     probe->cleared[0] = probe->cleared[1] = HEWN_NONE;
     probe->back = probe->most = probe->before = probe->after = 0;
     probe->turned = probe->cut = false;
@@ -284,6 +309,20 @@ hewn_result hewn_simplify_probe_move(const simplify_work *work, uint32_t v, cons
     begin(probe);
     HEWN_TRY(take_fan(work, v, HEWN_NONE, to, probe));
     return place_all(work, to, probe);
+}
+
+hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simplify_probe *probe)
+{
+    const uint32_t t = work->twin[h], c = work->tail[simplify_prev(h)];
+    const double *at = simplify_at(work, c);
+    double to_a[3], to_b[3], to_d[3];
+    simplify_between(at, simplify_at(work, work->tail[h]), to_a);
+    simplify_between(at, simplify_at(work, work->tail[t]), to_b);
+    simplify_between(at, simplify_at(work, work->tail[simplify_prev(t)]), to_d);
+    begin(probe);
+    HEWN_TRY(hewn_simplify_fan_add(&probe->fan, h / 3, to_a, to_d));
+    HEWN_TRY(hewn_simplify_fan_add(&probe->fan, t / 3, to_d, to_b));
+    return place_all(work, at, probe);
 }
 
 void hewn_simplify_probe_settle(const simplify_work *work, const simplify_probe *probe)

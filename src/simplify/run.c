@@ -28,9 +28,6 @@ static const double turned_factor = 1000;
  * samples follow, which edges go before others matters less than how many rounds there are. */
 static const double growth = 1.5, early_growth = 2.5;
 
-/* The distance that is aimed at, in means by cost. */
-static const double aim_factor = 1.35;
-
 /* --- one queue ---------------------------------------------------------------------------------------------------- */
 
 /* Edges that are collapsed in the order of their costs: all, or those inside one part. */
@@ -108,6 +105,20 @@ static bool grows_dear(edge_front *front, uint32_t name)
            (cost > front->limit || (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0]));
 }
 
+/* An edge that is about to collapse: whether that turns a triangle away from what is nearest in all of the input, which
+ * costs as much as if it did from what is near among samples. */
+static bool turns_away(edge_front *front, uint32_t name)
+{
+    simplify_work *work = front->work;
+    if (!work->samples->strict || work->flags[name] & SIMPLIFY_STRICT)
+        return false;
+    work->flags[name] |= SIMPLIFY_STRICT;
+    if (front->probe.turned > 0 || hewn_simplify_probe_turns(work, &front->probe) == 0)
+        return false;
+    work->key[name] = (float)fmin(turned_factor * fmax((double)work->key[name], work->samples->price), FLT_MAX);
+    return true;
+}
+
 /* Looks what becomes of samples. `*dear`: others are cheaper, the edge's key has grown. Else samples go where they will
  * be. Edges of a complex take theirs along, whatever becomes of them. */
 static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool *dear)
@@ -139,6 +150,9 @@ static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool
             if (*dear)
                 return HEWN_OK;
         }
+        *dear = !tied && turns_away(front, name);
+        if (*dear)
+            return HEWN_OK;
         hewn_simplify_probe_settle(work, &front->probe);
     }
     return HEWN_OK;
@@ -158,7 +172,7 @@ static hewn_result step(edge_front *front)
     if (!(work->flags[name] & SIMPLIFY_FRESH)) {
         const float cost = (float)plan.cost;
         work->key[name] = cost;
-        work->flags[name] = (uint8_t)((work->flags[name] & ~(SIMPLIFY_SLIM | SIMPLIFY_PROBED)) | SIMPLIFY_FRESH);
+        work->flags[name] = (uint8_t)((work->flags[name] & ~SIMPLIFY_RAISED) | SIMPLIFY_FRESH);
         if (cost > front->limit || isinf(cost))
             return HEWN_OK;
         if (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0])
@@ -392,7 +406,7 @@ static bool set_aim(simplify_work *work, uint32_t target)
     const double share = (double)work->live_faces / target;
     const double last = fmax((double)find_limit(work, work->live_faces - target, bins) * share * share, DBL_MIN);
     work->samples->price = last;
-    work->samples->aim = weight > 0 ? aim_factor * sqrt(last * target / (2 * weight)) : 1;
+    work->samples->aim = weight > 0 ? work->samples->aim_factor * sqrt(last * target / (2 * weight)) : 1;
     hewn_free(bins);
     return true;
 }

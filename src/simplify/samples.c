@@ -265,3 +265,25 @@ hewn_result hewn_simplify_samples_make(const simplify_work *work, const hewn_pol
     hewn_free(job.order);
     return result;
 }
+
+/* --- copies ------------------------------------------------------------------------------------------------------- */
+
+hewn_result hewn_simplify_samples_copy(const simplify_work *work, simplify_samples *out, hewn_error *error)
+{
+    const simplify_samples *samples = work->samples;
+    *out = *samples;
+    out->items = hewn_alloc(samples->count, sizeof *out->items);
+    out->first = hewn_alloc(work->face_count, sizeof *out->first);
+    if (!out->items || !out->first)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
+    memcpy(out->items, samples->items, samples->count * sizeof *out->items);
+    memcpy(out->first, samples->first, work->face_count * sizeof *out->first);
+    return HEWN_OK;
+}
+
+void hewn_simplify_samples_drop(simplify_samples *copy)
+{
+    hewn_free(copy->items);
+    hewn_free(copy->first);
+    *copy = (simplify_samples){0};
+}

@@ -24,6 +24,8 @@ typedef struct simplify_samples {
     double *positions;       /* of the input's vertices, in coordinates of the work */
     hewn_bvh bvh;            /* of the input */
     hewn_triangle_view input;
+    double aim_factor; /* the distance that is aimed at, in means by cost */
+    bool strict;       /* collapses look in all of the input for what triangles turn away from */
     double aim, price; /* a collapse that comes to `aim` costs at least `price` */
 } simplify_samples;
 
@@ -43,7 +45,8 @@ typedef struct simplify_probe {
     bool cut;    /* something is past `plenty` */
     double back; /* of the new vertex to the input */
     double before, after; /* sums of squares of all distances, by weights */
-    bool turned;          /* a triangle would face away from what is near its middle */
+    bool turned;          /* a triangle would face away from what is near its middle, among samples */
+    double place[3];      /* that of the fan */
 } simplify_probe;
 void hewn_simplify_probe_release(simplify_probe *probe);
 
@@ -53,6 +56,14 @@ hewn_result hewn_simplify_samples_make(const simplify_work *work, const hewn_pol
                                        simplify_samples *out, hewn_error *error);
 void hewn_simplify_samples_release(simplify_samples *samples);
 
+/* Samples of `work` that may move by themselves; all else is shared with these. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_samples_copy(const simplify_work *work, simplify_samples *out, hewn_error *error);
+void hewn_simplify_samples_drop(simplify_samples *copy);
+
+/* How good the mesh is, less being better: by the mean and the greatest distance between samples and mesh and between
+ * points of the mesh and the input, and by how many triangles face away. */
+double hewn_simplify_score(const simplify_work *work);
+
 /* Triangles, in coordinates of the work, along the curve of hewn_simplify_order(), for hewn_bvh_build_along(). NULL:
  * out of memory. */
 uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles);
@@ -60,6 +71,13 @@ uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles);
 /* HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe);
 hewn_result hewn_simplify_probe_move(const simplify_work *work, uint32_t v, const double to[3], simplify_probe *probe);
+
+/* After one of these, if it was not cut: how many triangles would face away from what is nearest to their middles in
+ * all of the input, not just around the nearest sample. 0 where there are no samples. */
+uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe);
+
+/* `h` is a half-edge that may be swapped. */
+hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simplify_probe *probe);
 
 /* Whether a triangle faces away from the input's triangle that is nearest to its middle. */
 bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face);

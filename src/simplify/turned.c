@@ -2,6 +2,9 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "simplify/swap.h"
+
+enum { PASSES = 3 };
 
 static double find_most(const simplify_samples *samples)
 {
@@ -11,57 +14,197 @@ static double find_most(const simplify_samples *samples)
     return most;
 }
 
-/* The edge of a triangle whose collapse does least; `most` becomes what it does. */
-static hewn_result choose(simplify_work *work, uint32_t face, simplify_probe *probe, simplify_plan *out, double *most)
+/* One way to change the mesh around a triangle. */
+typedef struct mending {
+    enum { MEND_NOT, MEND_COLLAPSE, MEND_SWAP, MEND_MOVE } kind;
+    simplify_plan plan; /* of a collapse; `at` also of a move */
+    uint32_t at;        /* the half-edge that is swapped, the vertex that moves */
+    uint32_t fewer;     /* triangles that face away no more */
+    double far;         /* how far away something comes to be, at most */
+} mending;
+
+typedef struct mend_job {
+    simplify_work *work;
+    double most;     /* nothing comes further away */
+    uint8_t *turned; /* one a triangle: it may face away */
+    simplify_probe probe;
+    mending best;
+} mend_job;
+
+/* --- ways --------------------------------------------------------------------------------------------------------- */
+
+static uint32_t count_turned(const simplify_work *work, uint32_t v, uint32_t but)
 {
-    out->half = HEWN_NONE;
-    for (uint32_t k = 0; k < 3; k++) {
-        simplify_plan plan = hewn_simplify_plan(work, simplify_name(work, 3 * face + k));
-        if (isinf(plan.cost) || plan.far || simplify_is_tied(work, plan.gone) || !hewn_simplify_allowed(work, &plan))
-            continue;
-        probe->enough = 0;
-        probe->plenty = INFINITY;
-        HEWN_TRY(hewn_simplify_probe_collapse(work, &plan, probe));
-        const double far = fmax(probe->most, probe->back);
-        if (probe->turned || far > *most)
-            continue;
-        *out = plan;
-        *most = far;
-    }
+    const uint32_t first = work->half[v];
+    uint32_t h = first, count = 0;
+    do {
+        const uint32_t in = simplify_prev(h);
+        if (simplify_head(work, h) != but && work->tail[in] != but)
+            count += hewn_simplify_is_turned(work, h / 3);
+        h = work->twin[in];
+    } while (h != HEWN_NONE && h != first);
+    return count;
+}
+
+/* Keeps what the probe has looked at, of `before` triangles that face away now, if it is better. */
+static void keep_better(mend_job *job, const mending *way, uint32_t before)
+{
+    const simplify_probe *probe = &job->probe;
+    const double far = fmax(probe->most, probe->back);
+    if (before == 0 || probe->cut || !(far <= job->most) || (before == job->best.fewer && far >= job->best.far))
+        return;
+    const uint32_t after = hewn_simplify_probe_turns(job->work, probe);
+    if (after >= before)
+        return;
+    const uint32_t fewer = before - after;
+    if (fewer < job->best.fewer || (fewer == job->best.fewer && far >= job->best.far))
+        return;
+    job->best = *way;
+    job->best.fewer = fewer;
+    job->best.far = far;
+}
+
+static hewn_result try_collapse(mend_job *job, uint32_t name)
+{
+    const simplify_work *work = job->work;
+    mending way = {.kind = MEND_COLLAPSE, .plan = hewn_simplify_plan(work, name)};
+    simplify_plan *plan = &way.plan;
+    if (isinf(plan->cost) || plan->far || simplify_is_tied(work, plan->gone) || !hewn_simplify_allowed(work, plan))
+        return HEWN_OK;
+    HEWN_TRY(hewn_simplify_probe_collapse(work, plan, &job->probe));
+    keep_better(job, &way, count_turned(work, plan->gone, HEWN_NONE) + count_turned(work, plan->kept, plan->gone));
     return HEWN_OK;
 }
 
-static hewn_result mend(simplify_work *work, uint32_t face, double most, simplify_probe *probe)
+static hewn_result try_swap(mend_job *job, uint32_t h)
 {
-    simplify_plan plan;
-    for (uint32_t k = 0; k < 3; k++)
-        if (work->rank[work->tail[3 * (size_t)face + k]] == SIMPLIFY_APART)
-            return HEWN_OK;
-    HEWN_TRY(choose(work, face, probe, &plan, &most));
-    if (plan.half == HEWN_NONE)
+    const simplify_work *work = job->work;
+    const mending way = {.kind = MEND_SWAP, .at = h};
+    if (!hewn_simplify_may_swap(work, h))
         return HEWN_OK;
-    HEWN_TRY(hewn_simplify_probe_collapse(work, &plan, probe));
-    hewn_simplify_probe_settle(work, probe);
-    work->live_faces -= hewn_simplify_collapse(work, &plan);
-    work->live_vertices--;
+    HEWN_TRY(hewn_simplify_probe_swap(work, h, &job->probe));
+    keep_better(job, &way,
+                (uint32_t)hewn_simplify_is_turned(work, h / 3) + hewn_simplify_is_turned(work, work->twin[h] / 3));
     return HEWN_OK;
+}
+
+/* By so many times `step`. */
+static hewn_result try_move(mend_job *job, uint32_t v, const double step[3], double times, uint32_t before)
+{
+    const simplify_work *work = job->work;
+    mending way = {.kind = MEND_MOVE, .at = v};
+    for (int axis = 0; axis < 3; axis++)
+        way.plan.at[axis] = simplify_at(work, v)[axis] + times * step[axis];
+    if (!hewn_simplify_may_move(work, v, way.plan.at))
+        return HEWN_OK;
+    HEWN_TRY(hewn_simplify_probe_move(work, v, way.plan.at, &job->probe));
+    keep_better(job, &way, before);
+    return HEWN_OK;
+}
+
+/* A corner moves out of and into the surface, and to where it was in the input. */
+static hewn_result try_moves(mend_job *job, uint32_t face, uint32_t v)
+{
+    static const double times[] = {0.25, -0.25, 0.5, -0.5, 1, -1, 2, -2};
+    const simplify_work *work = job->work;
+    const uint32_t *corner = work->tail + 3 * (size_t)face;
+    double normal[3], step[3];
+    if (work->rank[v] != SIMPLIFY_SMOOTH)
+        return HEWN_OK;
+    const uint32_t before = count_turned(work, v, HEWN_NONE);
+    simplify_area_vector(simplify_at(work, corner[0]), simplify_at(work, corner[1]), simplify_at(work, corner[2]),
+                         normal);
+    const double length = sqrt(simplify_dot(normal, normal));
+    for (int axis = 0; axis < 3; axis++)
+        step[axis] = length > 0 ? job->most * normal[axis] / length : 0;
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++)
+        for (int axis = 0; axis < 4; axis++) {
+            const double along[3] = {axis == 0 ? job->most : 0, axis == 1 ? job->most : 0, axis == 2 ? job->most : 0};
+            HEWN_TRY(try_move(job, v, axis < 3 ? along : step, times[i], before));
+        }
+    simplify_between(simplify_at(work, v), work->samples->positions + 3 * (size_t)work->origins[v], step);
+    HEWN_TRY(try_move(job, v, step, 0.5, before));
+    return try_move(job, v, step, 1, before);
+}
+
+/* --- doing it ----------------------------------------------------------------------------------------------------- */
+
+static hewn_result carry_out(mend_job *job)
+{
+    simplify_work *work = job->work;
+    const mending *way = &job->best;
+    job->probe.plenty = INFINITY;
+    if (way->kind == MEND_SWAP) {
+        HEWN_TRY(hewn_simplify_probe_swap(work, way->at, &job->probe));
+        hewn_simplify_swap(work, way->at);
+    } else if (way->kind == MEND_MOVE) {
+        HEWN_TRY(hewn_simplify_probe_move(work, way->at, way->plan.at, &job->probe));
+        for (size_t axis = 0; axis < 3; axis++)
+            work->positions[3 * (size_t)way->at + axis] = way->plan.at[axis];
+    } else {
+        HEWN_TRY(hewn_simplify_probe_collapse(work, &way->plan, &job->probe));
+        work->live_faces -= hewn_simplify_collapse(work, &way->plan);
+        work->live_vertices--;
+    }
+    hewn_simplify_probe_settle(work, &job->probe);
+    for (uint32_t f = 0; f < job->probe.fan.count; f++)
+        job->turned[job->probe.fan.blocks[f / SIMPLIFY_FOUR].face[f % SIMPLIFY_FOUR]] = 1;
+    return HEWN_OK;
+}
+
+/* Edges at a corner. */
+static hewn_result try_edges(mend_job *job, uint32_t v)
+{
+    const simplify_work *work = job->work;
+    const uint32_t first = work->half[v];
+    uint32_t h = first;
+    do {
+        const uint32_t in = simplify_prev(h);
+        HEWN_TRY(try_collapse(job, simplify_name(work, h)));
+        if (work->twin[h] != HEWN_NONE)
+            HEWN_TRY(try_swap(job, h));
+        h = work->twin[in];
+    } while (h != HEWN_NONE && h != first);
+    return HEWN_OK;
+}
+
+/* The best of what can be done with a triangle's edges, else at its corners, else with all edges there. */
+static hewn_result mend(mend_job *job, uint32_t face)
+{
+    const simplify_work *work = job->work;
+    const uint32_t *corner = work->tail + 3 * (size_t)face;
+    for (uint32_t k = 0; k < 3; k++)
+        if (work->rank[corner[k]] == SIMPLIFY_APART)
+            return HEWN_OK;
+    job->best = (mending){.kind = MEND_NOT};
+    job->probe.enough = 0;
+    job->probe.plenty = job->most;
+    for (uint32_t k = 0; k < 3; k++) {
+        HEWN_TRY(try_collapse(job, simplify_name(work, 3 * face + k)));
+        if (work->twin[3 * face + k] != HEWN_NONE)
+            HEWN_TRY(try_swap(job, 3 * face + k));
+    }
+    for (uint32_t k = 0; k < 3 && job->best.kind == MEND_NOT; k++)
+        HEWN_TRY(try_moves(job, face, corner[k]));
+    for (uint32_t k = 0; k < 3 && job->best.kind == MEND_NOT; k++)
+        HEWN_TRY(try_edges(job, corner[k]));
+    return job->best.kind == MEND_NOT ? HEWN_OK : carry_out(job);
 }
 
 hewn_result hewn_simplify_right(simplify_work *work, hewn_error *error)
 {
-    const simplify_samples *samples = work->samples;
-    const double most = find_most(samples);
-    uint8_t *turned = hewn_alloc(work->face_count, 1);
-    simplify_probe probe = {0};
+    mend_job job = {.work = work, .most = find_most(work->samples)};
+    uint8_t *turned = job.turned = hewn_alloc(work->face_count, 1);
     hewn_result result = turned ? HEWN_OK : HEWN_OUT_OF_MEMORY;
 #pragma omp parallel for schedule(dynamic, 64) if (work->vertex_count > SIMPLIFY_FEW / 8)
     for (uint32_t f = 0; f < (turned ? work->face_count : 0); f++)
         turned[f] = hewn_simplify_is_turned(work, f);
-    for (uint32_t f = 0; f < work->face_count && result == HEWN_OK; f++)
-        if (turned[f] && work->tail[3 * (size_t)f] != HEWN_NONE && hewn_simplify_is_turned(work, f))
-            result = mend(work, f, most, &probe);
+    for (int pass = 0; pass < PASSES; pass++)
+        for (uint32_t f = 0; f < work->face_count && result == HEWN_OK; f++)
+            if (turned[f] && work->tail[3 * (size_t)f] != HEWN_NONE && hewn_simplify_is_turned(work, f))
+                result = mend(&job, f);
     hewn_free(turned);
-    hewn_simplify_probe_release(&probe);
+    hewn_simplify_probe_release(&job.probe);
     return result == HEWN_OK ? hewn_simplify_order(work, 0, error)
                              : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
 }

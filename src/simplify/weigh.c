@@ -63,7 +63,7 @@ static void find_keys(simplify_work *work)
     for (uint32_t h = 0; h < 3 * work->face_count; h++)
         if (simplify_name(work, h) == h) {
             work->key[h] = (float)hewn_simplify_plan(work, h).cost;
-            work->flags[h] = (uint8_t)((work->flags[h] & ~(SIMPLIFY_SLIM | SIMPLIFY_PROBED)) | SIMPLIFY_FRESH);
+            work->flags[h] = (uint8_t)((work->flags[h] & ~SIMPLIFY_RAISED) | SIMPLIFY_FRESH);
         }
 }
 

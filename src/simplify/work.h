@@ -18,7 +18,7 @@
 #define SIMPLIFY_GONE 0xFFFFFFFEu
 
 /* Meshes of fewer vertices are done by one thread: waking others takes longer. */
-enum { SIMPLIFY_FEW = 8000 };
+enum { SIMPLIFY_FEW = 4000 };
 
 /* The most fans of a vertex of a complex that may move; others stay. */
 enum { SIMPLIFY_MOST_TIED = 16 };
@@ -36,10 +36,12 @@ typedef enum simplify_rank {
 /* Of edges, at their names. Boundary edges are features too. */
 enum {
     SIMPLIFY_FEATURE = 1,
-    SIMPLIFY_FRESH = 2,  /* its key is that of its ends as they are; else it is a lower bound */
-    SIMPLIFY_QUEUED = 4, /* waits in a queue */
-    SIMPLIFY_SLIM = 8,   /* its collapse makes a sliver, which its key was raised for */
-    SIMPLIFY_PROBED = 16 /* its key was raised to what the collapse does to samples, if that is more */
+    SIMPLIFY_FRESH = 2,   /* its key is that of its ends as they are; else it is a lower bound */
+    SIMPLIFY_QUEUED = 4,  /* waits in a queue */
+    SIMPLIFY_SLIM = 8,    /* its collapse makes a sliver, which its key was raised for */
+    SIMPLIFY_PROBED = 16, /* its key was raised to what the collapse does to samples, if that is more */
+    SIMPLIFY_STRICT = 32, /* its key was raised if the collapse turns a triangle away from the input */
+    SIMPLIFY_RAISED = SIMPLIFY_SLIM | SIMPLIFY_PROBED | SIMPLIFY_STRICT
 };
 
 typedef struct simplify_work {
@@ -127,6 +129,10 @@ static inline uint32_t simplify_turn(const simplify_work *work, uint32_t h)
  * what is not manifold. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_build(simplify_work *work, const hewn_polygons *triangles, hewn_error *error);
 void hewn_simplify_release(simplify_work *work);
+
+/* The same again, but for attributes and samples, which are not owned. HEWN_OUT_OF_MEMORY; what is there then is to be
+ * released as well. */
+hewn_result hewn_simplify_copy(const simplify_work *work, simplify_work *out, hewn_error *error);
 
 /* Marks features and ranks vertices. */
 hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error);
