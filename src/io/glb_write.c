@@ -297,7 +297,8 @@ hewn_result hewn_glb_write_body(const hewn_writing *job, hewn_output *output, he
     HEWN_TRY(hewn_stream_write(job, &stream, output, error));
     for (size_t i = 0; i < plan->layer_count; i++) {
         own->layer = &plan->layers[i];
-        stream = (hewn_stream){put_layer, vertices, own->layer->stream.item, NULL, share * (double)(i + 1), share, NULL};
+        stream =
+            (hewn_stream){put_layer, vertices, own->layer->stream.item, NULL, share * (double)(i + 1), share, NULL};
         HEWN_TRY(hewn_stream_write(job, &stream, output, error));
     }
     stream = (hewn_stream){put_index, corners, 4, NULL, 0.7, 0.3, NULL};

@@ -35,9 +35,9 @@ void hewn_stars_free(hewn_stars *stars);
 hewn_result hewn_stars_examine(const hewn_face_view *view, const hewn_stars *stars, uint64_t begin, uint64_t end,
                                const uint32_t *slots, hewn_star_counts *counts, hewn_error *error);
 
-/* The same of all vertices of a mesh of triangles, without rows of all of them at once: they are made for a few thousand
- * vertices at a time, from the runs of triangles that name any of these. False in `*done`, with nothing counted, where
- * a run of triangles names vertices all over the mesh, so that the triangles would be read too often.
+/* The same of all vertices of a mesh of triangles, without rows of all of them at once: they are made for a few
+ * thousand vertices at a time, from the runs of triangles that name any of these. False in `*done`, with nothing
+ * counted, where a run of triangles names vertices all over the mesh, so that the triangles would be read too often.
  * HEWN_OUT_OF_MEMORY, HEWN_CANCELLED. */
 hewn_result hewn_stars_examine_ranges(const hewn_face_view *view, const char *stage, const hewn_progress *progress,
                                       hewn_star_counts *counts, bool *done, hewn_error *error);
