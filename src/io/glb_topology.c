@@ -33,12 +33,72 @@ static uint64_t hash_key(const uint32_t key[3])
     return hash ^ hash >> 31;
 }
 
+/* A bit for each of some hashes: whether any vertex has it, and whether several do. Few do by chance, so that few are
+ * to be compared; and bits are so few bytes that they stay near the processor. */
+typedef struct hash_bits {
+    uint64_t *any, *several;
+    uint64_t mask;
+    uint64_t again; /* vertices whose bit was set before */
+} hash_bits;
+
+enum { LEAST_BITS = 1 << 10, MOST_BITS = 1 << 28, RUN = 64 };
+
+static bool has_bit(const uint64_t *bits, uint64_t at)
+{
+    return bits[at / 64] >> at % 64 & 1;
+}
+
+/* The hashes of a run of vertices, whose bits, which lie anywhere, are all asked for at once. */
+static uint64_t hash_run(const hewn_writing *job, const hewn_glb_plan *plan, uint64_t begin, const uint64_t *bits,
+                         uint64_t mask, uint64_t hashes[RUN])
+{
+    const uint64_t end = job->vertex_count - begin < RUN ? job->vertex_count : begin + RUN;
+    for (uint64_t v = begin; v < end; v++) {
+        uint32_t key[3];
+        get_key(job, plan, v, key);
+        hashes[v - begin] = hash_key(key);
+        __builtin_prefetch(&bits[(hashes[v - begin] & mask) / 64]);
+    }
+    return end;
+}
+
+static void free_bits(hash_bits *bits)
+{
+    hewn_free(bits->any);
+    hewn_free(bits->several);
+}
+
+static hewn_result set_bits(const hewn_writing *job, const hewn_glb_plan *plan, hash_bits *out, hewn_error *error)
+{
+    uint64_t count = LEAST_BITS;
+    while (count < 8 * job->vertex_count && count < MOST_BITS)
+        count *= 2;
+    *out = (hash_bits){hewn_alloc_zero(count / 64, sizeof(uint64_t)), hewn_alloc_zero(count / 64, sizeof(uint64_t)),
+                       count - 1, 0};
+    if (!out->any || !out->several)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
+    for (uint64_t begin = 0, end; begin < job->vertex_count; begin = end) {
+        uint64_t hashes[RUN];
+        end = hash_run(job, plan, begin, out->any, out->mask, hashes);
+        for (uint64_t v = begin; v < end; v++) {
+            const uint64_t at = hashes[v - begin] & out->mask;
+            if (has_bit(out->any, at)) {
+                out->several[at / 64] |= (uint64_t)1 << at % 64;
+                out->again++;
+            }
+            out->any[at / 64] |= (uint64_t)1 << at % 64;
+            HEWN_TRY(look_up(job, v, error));
+        }
+    }
+    return HEWN_OK;
+}
+
 /* A vertex and the high bits of its hash, so that only those that are likely to be equal are read again. */
 typedef struct slot {
     uint32_t vertex, hash;
 } slot;
 
-/* What memory may be spent on slots: where there are more vertices, those of some hashes are compared at a time. */
+/* What memory may be spent on slots: where more vertices are to be compared, those of some hashes are at a time. */
 enum { MOST_SLOTS = 1 << 22 };
 
 typedef struct slot_table {
@@ -46,44 +106,56 @@ typedef struct slot_table {
     size_t count, used; /* of which at least one stays free */
 } slot_table;
 
-/* Looks at the vertices whose hash modulo `rounds` is `round`. Ends early where the table is full. */
-static hewn_result find_equal(const hewn_writing *job, const hewn_glb_plan *plan, slot_table *table, uint64_t round,
-                              uint64_t rounds, bool *out, hewn_error *error)
+/* Looks for a vertex at the same place as `v`, and puts it into the table. */
+static bool meets_equal(const hewn_writing *job, const hewn_glb_plan *plan, slot_table *table, uint64_t v,
+                        uint64_t hash, uint64_t rounds)
 {
+    uint32_t key[3], other[3];
     slot *slots = table->slots;
-    size_t mask = table->count - 1;
-    memset(slots, 0xff, table->count * sizeof *slots);
-    table->used = 0;
-    for (uint64_t v = 0; v < job->vertex_count && !*out && table->used < mask; v++) {
-        uint32_t key[3], other[3];
-        get_key(job, plan, v, key);
-        uint64_t hash = hash_key(key);
-        HEWN_TRY(look_up(job, v, error));
-        if (hash % rounds != round)
+    const size_t mask = table->count - 1;
+    size_t at = (size_t)(hash / rounds) & mask;
+    get_key(job, plan, v, key);
+    for (; slots[at].vertex != HEWN_NONE; at = (at + 1) & mask) {
+        if (slots[at].hash != (uint32_t)(hash >> 32))
             continue;
-        uint64_t mixed = hash / rounds;
-        size_t at = (size_t)mixed & mask;
-        for (; slots[at].vertex != HEWN_NONE && !*out; at = (at + 1) & mask) {
-            if (slots[at].hash != (uint32_t)(hash >> 32))
-                continue;
-            get_key(job, plan, slots[at].vertex, other);
-            *out = memcmp(key, other, sizeof key) == 0;
+        get_key(job, plan, slots[at].vertex, other);
+        if (memcmp(key, other, sizeof key) == 0)
+            return true;
+    }
+    slots[at] = (slot){(uint32_t)v, (uint32_t)(hash >> 32)};
+    table->used++;
+    return false;
+}
+
+/* Looks at the vertices whose hash several have and is `round` modulo `rounds`. Ends early where the table is full. */
+static hewn_result find_equal(const hewn_writing *job, const hewn_glb_plan *plan, const hash_bits *bits,
+                              slot_table *table, uint64_t round, uint64_t rounds, bool *out, hewn_error *error)
+{
+    const size_t most = table->count - 1;
+    memset(table->slots, 0xff, table->count * sizeof *table->slots);
+    table->used = 0;
+    for (uint64_t begin = 0, end; begin < job->vertex_count && !*out && table->used < most; begin = end) {
+        uint64_t hashes[RUN];
+        end = hash_run(job, plan, begin, bits->several, bits->mask, hashes);
+        for (uint64_t v = begin; v < end && !*out && table->used < most; v++) {
+            const uint64_t hash = hashes[v - begin];
+            if (has_bit(bits->several, hash & bits->mask) && hash % rounds == round)
+                *out = meets_equal(job, plan, table, v, hash, rounds);
+            HEWN_TRY(look_up(job, v, error));
         }
-        slots[at] = (slot){(uint32_t)v, (uint32_t)(hash >> 32)};
-        table->used++;
     }
     return HEWN_OK;
 }
 
-static hewn_result has_equal_positions(const hewn_writing *job, const hewn_glb_plan *plan, bool *out, hewn_error *error)
+static hewn_result compare_some(const hewn_writing *job, const hewn_glb_plan *plan, const hash_bits *bits, bool *out,
+                                hewn_error *error)
 {
     size_t count = 16;
-    uint64_t needed = job->vertex_count + job->vertex_count / 2, rounds = needed / MOST_SLOTS + 1;
+    uint64_t needed = 3 * bits->again, rounds = needed / MOST_SLOTS + 1; /* with the first of each, at most twice */
     while (count < needed / rounds + needed / rounds / 16)
         count *= 2;
     slot_table table = {NULL, count / 2, 0};
     hewn_result result = HEWN_OK;
-    *out = false;
     for (uint64_t round = 0; round < rounds && result == HEWN_OK && !*out;) {
         bool full = !table.slots || table.used == table.count - 1; /* never yet but where hashes are far from even */
         slot *slots = full ? hewn_realloc(table.slots, 2 * table.count, sizeof *slots) : table.slots;
@@ -92,10 +164,21 @@ static hewn_result has_equal_positions(const hewn_writing *job, const hewn_glb_p
             return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for writing");
         }
         table = (slot_table){slots, full ? 2 * table.count : table.count, 0};
-        result = find_equal(job, plan, &table, round, rounds, out, error);
+        result = find_equal(job, plan, bits, &table, round, rounds, out, error);
         round += table.used < table.count - 1;
     }
     hewn_free(table.slots);
+    return result;
+}
+
+static hewn_result has_equal_positions(const hewn_writing *job, const hewn_glb_plan *plan, bool *out, hewn_error *error)
+{
+    hash_bits bits;
+    *out = false;
+    hewn_result result = set_bits(job, plan, &bits, error);
+    if (result == HEWN_OK && bits.again > 0)
+        result = compare_some(job, plan, &bits, out, error);
+    free_bits(&bits);
     return result;
 }
 
