@@ -203,7 +203,7 @@ static void hard_trees_keep_their_cells(void **state)
 }
 
 /* Trees of a few hard leaves, each of which always has the same operators, so that one code lists all such trees. */
-enum { LEAVES = 4 };
+enum { LEAVES = 2 };
 
 static hewn_node grow_hard_leaf(grower *own, uint32_t grove, uint32_t which)
 {
