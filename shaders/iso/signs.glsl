@@ -50,7 +50,12 @@ void main()
 #else
     const uint each = 1u;
 #endif
-    uint a_brick = HEWN_BRICK_WORDS / each, own = invocation(), slot = own / a_brick;
+#ifdef FIELD_LISTED
+    uint own = spread_invocation();
+#else
+    uint own = invocation();
+#endif
+    uint a_brick = HEWN_BRICK_WORDS / each, slot = own / a_brick;
     if (slot >= push.count) /* all of a brick's invocations */
         return;
     uvec3 first = 8u * unpack_brick(push.bricks.at[slot]);

@@ -158,7 +158,7 @@ void solve_four(uint first, uint end, uvec3 base)
 
 void main()
 {
-    uint own = invocation(), slot = own / A_BRICK;
+    uint own = spread_invocation(), slot = own / A_BRICK;
     if (slot >= push.count) /* all of a brick's invocations */
         return;
     uint begin = push.vertex_bases.at[slot], end = push.vertex_count;
