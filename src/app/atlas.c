@@ -1,10 +1,10 @@
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app/app.h"
 #include "app/file_arguments.h"
 #include "app/number.h"
+#include "app/output_arguments.h"
 #include "base/alloc.h"
 #include "base/error.h"
 
@@ -113,16 +113,12 @@ static hewn_result read_request(const hewn_arguments *arguments, atlas_request *
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "one file at a time, please; '%s' is one too many",
                          arguments->operands[1]);
     desc->font = arguments->operands[0];
-    desc->output = hewn_arguments_value(arguments, "output");
     desc->json = hewn_arguments_value(arguments, "json");
     request->quiet = hewn_arguments_has(arguments, "quiet");
-    if (!desc->output)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "where should the image go? Give -o FILE");
-    if (!desc->font[0] || !desc->output[0] || (desc->json && !desc->json[0]))
+    HEWN_TRY(hewn_output_arguments_read(arguments, "image", "FILE", &desc->output, error));
+    if (!desc->font[0] || (desc->json && !desc->json[0]))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
-    if (strcmp(desc->output, "-") == 0 && isatty(STDOUT_FILENO))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "standard output is a terminal, and PNG is binary; send it to a file or a pipe");
+    HEWN_TRY(hewn_output_arguments_spare_terminal(desc->output, "PNG", error));
     HEWN_TRY(read_look(arguments, desc, error));
     return read_characters(arguments, request, error);
 }

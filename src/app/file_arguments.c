@@ -1,8 +1,8 @@
 #include "app/file_arguments.h"
 
 #include <string.h>
-#include <unistd.h>
 
+#include "app/output_arguments.h"
 #include "base/error.h"
 
 hewn_result hewn_input_argument_read(const hewn_arguments *arguments, const char **out, hewn_error *error)
@@ -52,24 +52,6 @@ static hewn_result read_axis(const hewn_arguments *arguments, const char *name, 
     return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--%s is +X, +Y or +Z, not '%s'", name, text);
 }
 
-static hewn_result read_output(const hewn_arguments *arguments, hewn_file_job_desc *desc, hewn_error *error)
-{
-    const char *to = hewn_arguments_value(arguments, "to");
-    desc->output = hewn_arguments_value(arguments, "output");
-    desc->report = hewn_arguments_value(arguments, "report");
-    if (!desc->output)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "where should the mesh go? Give -o FILE");
-    if (!desc->output[0] || (desc->report && !desc->report[0]))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
-    if (to)
-        HEWN_TRY(hewn_format_parse(to, "--to", &desc->to, error));
-    bool binary = desc->to == HEWN_MESH_PLY || desc->to == HEWN_MESH_STL;
-    if (strcmp(desc->output, "-") == 0 && binary && isatty(STDOUT_FILENO))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "standard output is a terminal, and %s is binary; send it to a file or a pipe", to);
-    return HEWN_OK;
-}
-
 hewn_result hewn_file_arguments_read(const hewn_arguments *arguments, hewn_file_arguments *out, hewn_error *error)
 {
     *out = (hewn_file_arguments){0};
@@ -78,7 +60,7 @@ hewn_result hewn_file_arguments_read(const hewn_arguments *arguments, hewn_file_
     HEWN_TRY(hewn_input_argument_read(arguments, &desc->input, error));
     if (from)
         HEWN_TRY(hewn_format_parse(from, "--from", &desc->from, error));
-    HEWN_TRY(read_output(arguments, desc, error));
+    HEWN_TRY(hewn_output_arguments_read_mesh(arguments, &desc->output, &desc->report, &desc->to, error));
     HEWN_TRY(read_unit(arguments, "unit", &desc->unit, error));
     HEWN_TRY(read_axis(arguments, "up", &out->up, &desc->up, error));
     HEWN_TRY(read_unit(arguments, "to-unit", &desc->to_unit, error));

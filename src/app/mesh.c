@@ -1,10 +1,10 @@
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app/app.h"
 #include "app/file_arguments.h"
 #include "app/number.h"
+#include "app/output_arguments.h"
 #include "app/scene_arguments.h"
 #include "app/simplify_arguments.h"
 #include "app/smooth_arguments.h"
@@ -117,19 +117,7 @@ static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *requ
 static hewn_result read_output(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
 {
     hewn_mesh_job_desc *desc = &request->desc;
-    desc->output = hewn_arguments_value(arguments, "output");
-    desc->report = hewn_arguments_value(arguments, "report");
-    if (!desc->output)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "where should the mesh go? Give -o FILE");
-    if (!desc->output[0] || (desc->report && !desc->report[0]))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
-    const char *format = hewn_arguments_value(arguments, "to");
-    if (format)
-        HEWN_TRY(hewn_format_parse(format, "--to", &desc->format, error));
-    bool binary = desc->format == HEWN_MESH_PLY || desc->format == HEWN_MESH_STL;
-    if (is_dash(desc->output) && binary && isatty(STDOUT_FILENO))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "standard output is a terminal, and %s is binary; send it to a file or a pipe", format);
+    HEWN_TRY(hewn_output_arguments_read_mesh(arguments, &desc->output, &desc->report, &desc->format, error));
     request->quiet = hewn_arguments_has(arguments, "quiet");
     request->watch = hewn_arguments_has(arguments, "watch");
     if (request->watch && (is_dash(desc->output) || is_dash(desc->scene.path)))

@@ -3,10 +3,10 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "app/file_arguments.h"
 #include "app/number.h"
+#include "app/output_arguments.h"
 #include "app/simplify_arguments.h"
 #include "app/smooth_arguments.h"
 #include "app/volume_arguments.h"
@@ -133,24 +133,6 @@ static hewn_result read_surface(const hewn_arguments *arguments, hewn_volume_job
     return HEWN_OK;
 }
 
-static hewn_result read_output(const hewn_arguments *arguments, hewn_volume_job_desc *desc, hewn_error *error)
-{
-    const char *to = hewn_arguments_value(arguments, "to");
-    desc->output = hewn_arguments_value(arguments, "output");
-    desc->report = hewn_arguments_value(arguments, "report");
-    if (!desc->output)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "where should the mesh go? Give -o FILE");
-    if (!desc->output[0] || (desc->report && !desc->report[0]))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
-    if (to)
-        HEWN_TRY(hewn_format_parse(to, "--to", &desc->format, error));
-    bool binary = desc->format == HEWN_MESH_PLY || desc->format == HEWN_MESH_STL;
-    if (strcmp(desc->output, "-") == 0 && binary && isatty(STDOUT_FILENO))
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT,
-                         "standard output is a terminal, and %s is binary; send it to a file or a pipe", to);
-    return HEWN_OK;
-}
-
 static hewn_result read_request(const hewn_arguments *arguments, hewn_volume_format format, request *out,
                                 hewn_error *error)
 {
@@ -163,7 +145,7 @@ static hewn_result read_request(const hewn_arguments *arguments, hewn_volume_for
     desc->iso = out->volume.has_iso ? &out->volume.iso : NULL;
     HEWN_TRY(read_place(arguments, desc, error));
     HEWN_TRY(read_surface(arguments, desc, error));
-    HEWN_TRY(read_output(arguments, desc, error));
+    HEWN_TRY(hewn_output_arguments_read_mesh(arguments, &desc->output, &desc->report, &desc->format, error));
     HEWN_TRY(read_steps(arguments, out, error));
     out->quiet = hewn_arguments_has(arguments, "quiet");
     return HEWN_OK;

@@ -207,11 +207,7 @@ hewn_result hewn_dual_classify(const hewn_extractor *extractor, const struct hew
     HEWN_TRY(take_surface(bricks, workspace, out, error));
     hewn_commands *commands;
     double times[2] = {0};
-    HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
-    hewn_commands_mark(commands);
-    hewn_surface_record_signs(extractor, grid, bricks, out, commands);
-    hewn_commands_mark(commands);
-    hewn_surface_record_links(extractor, bricks, out, commands);
+    HEWN_TRY(hewn_surface_begin(extractor, grid, bricks, out, &commands, error));
     hewn_result result = HEWN_OK;
     if (!extractor->on_host)
         result = count_on_device(extractor, grid, bricks, out, workspace, commands, &results, error);

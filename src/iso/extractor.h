@@ -131,11 +131,10 @@ hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct 
                                   const hewn_bricks *bricks, hewn_workspace *workspace, hewn_surface *out,
                                   hewn_error *error);
 
-/* Parts of that: the signs of the bricks' samples, and their neighbours. */
-void hewn_surface_record_signs(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
-                               const hewn_surface *surface, hewn_commands *commands);
-void hewn_surface_record_links(const hewn_extractor *extractor, const hewn_bricks *bricks, const hewn_surface *surface,
-                               hewn_commands *commands);
+/* The beginning of that: a recording of the signs of the bricks' samples, between its first two marks, and of the
+ * bricks' neighbours. */
+hewn_result hewn_surface_begin(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                               const hewn_surface *surface, hewn_commands **out, hewn_error *error);
 
 /* Makes what the trilinear interpolant's topology needs, if it is not there yet; and lets go of it. */
 hewn_result hewn_mc33_prepare(hewn_extractor *extractor, hewn_error *error);

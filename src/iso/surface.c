@@ -30,8 +30,8 @@ static hewn_result take_surface(const hewn_bricks *bricks, hewn_workspace *works
     return HEWN_OK;
 }
 
-void hewn_surface_record_signs(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
-                               const hewn_surface *surface, hewn_commands *commands)
+static void record_signs(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                         const hewn_surface *surface, hewn_commands *commands)
 {
     struct hewn_sign_push push = {
         .grid = *grid, .count = bricks->count, .bricks = bricks->list->address, .signs = surface->signs->address};
@@ -39,8 +39,8 @@ void hewn_surface_record_signs(const hewn_extractor *extractor, const struct hew
                            hewn_groups_for((uint64_t)bricks->count * HEWN_BRICK_WORDS, 64));
 }
 
-void hewn_surface_record_links(const hewn_extractor *extractor, const hewn_bricks *bricks, const hewn_surface *surface,
-                               hewn_commands *commands)
+static void record_links(const hewn_extractor *extractor, const hewn_bricks *bricks, const hewn_surface *surface,
+                         hewn_commands *commands)
 {
     struct hewn_link_push push = {.levels = bricks->levels,
                                   .count = bricks->count,
@@ -51,6 +51,17 @@ void hewn_surface_record_links(const hewn_extractor *extractor, const hewn_brick
         push.states[i] = bricks->states[i]->address;
     hewn_commands_dispatch(commands, extractor->link, &push, NULL,
                            hewn_groups_for((uint64_t)bricks->count * HEWN_BRICK_LINKS, 64));
+}
+
+hewn_result hewn_surface_begin(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
+                               const hewn_surface *surface, hewn_commands **out, hewn_error *error)
+{
+    HEWN_TRY(hewn_commands_begin(extractor->device, out, error));
+    hewn_commands_mark(*out);
+    record_signs(extractor, grid, bricks, surface, *out);
+    hewn_commands_mark(*out);
+    record_links(extractor, bricks, surface, *out);
+    return HEWN_OK;
 }
 
 static void record_classify(const hewn_extractor *extractor, const struct hewn_grid *grid, const hewn_bricks *bricks,
@@ -108,11 +119,7 @@ hewn_result hewn_surface_classify(const hewn_extractor *extractor, const struct 
     HEWN_TRY(take_surface(bricks, workspace, out, error));
     hewn_commands *commands;
     double times[2] = {0};
-    HEWN_TRY(hewn_commands_begin(extractor->device, &commands, error));
-    hewn_commands_mark(commands);
-    hewn_surface_record_signs(extractor, grid, bricks, out, commands);
-    hewn_commands_mark(commands);
-    hewn_surface_record_links(extractor, bricks, out, commands);
+    HEWN_TRY(hewn_surface_begin(extractor, grid, bricks, out, &commands, error));
     hewn_result result = HEWN_OK;
     if (!extractor->on_host)
         result = count_on_device(extractor, grid, bricks, out, workspace, commands, &results, error);

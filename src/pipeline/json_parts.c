@@ -49,6 +49,22 @@ void hewn_json_certificate(hewn_json *json, const hewn_certificate *certificate)
     hewn_json_unsigned(json, "degenerate_faces", certificate->degenerate_faces);
 }
 
+void hewn_json_files(hewn_json *json, const char *input, const char *from, const char *output, const char *to)
+{
+    hewn_json_string(json, "version", hewn_version());
+    hewn_json_string(json, "input", input);
+    hewn_json_string(json, "from", from);
+    hewn_json_string(json, "output", output);
+    hewn_json_string(json, "to", to);
+}
+
+void hewn_json_host_peak(hewn_json *json, uint64_t bytes)
+{
+    hewn_json_object(json, "peak");
+    hewn_json_unsigned(json, "host_bytes", bytes);
+    hewn_json_end_object(json);
+}
+
 /* Microseconds are all that a wall clock is good for; more digits only make the file hard to read. */
 static double microseconds(double seconds)
 {

@@ -15,6 +15,12 @@ void hewn_json_certificate(hewn_json *json, const hewn_certificate *certificate)
 /* What was found and kept, as an object. */
 void hewn_json_bodies(hewn_json *json, const char *key, const hewn_body_counts *counts);
 
+/* "version", "input", "from", "output" and "to", the formats by their names. */
+void hewn_json_files(hewn_json *json, const char *input, const char *from, const char *output, const char *to);
+
+/* "peak", of a job that needs no device. */
+void hewn_json_host_peak(hewn_json *json, uint64_t bytes);
+
 /* "seconds" and "stages". */
 void hewn_json_stages(hewn_json *json, const hewn_report_stage *stages, uint32_t count, double seconds);
 

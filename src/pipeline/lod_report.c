@@ -34,15 +34,10 @@ hewn_result hewn_lod_report_write(const hewn_lod_report *report, const char *pat
     hewn_text text = {0};
     hewn_json json = hewn_json_begin(&text);
     hewn_json_object(&json, NULL);
-    hewn_json_string(&json, "version", hewn_version());
-    hewn_json_string(&json, "input", report->input);
-    hewn_json_string(&json, "from", hewn_mesh_format_name(report->from));
-    hewn_json_string(&json, "output", report->output);
-    hewn_json_string(&json, "to", hewn_mesh_format_name(report->to));
+    hewn_json_files(&json, report->input, hewn_mesh_format_name(report->from), report->output,
+                    hewn_mesh_format_name(report->to));
     hewn_json_stages(&json, report->stages, report->stage_count, report->seconds);
-    hewn_json_object(&json, "peak");
-    hewn_json_unsigned(&json, "host_bytes", report->peak_host_bytes);
-    hewn_json_end_object(&json);
+    hewn_json_host_peak(&json, report->peak_host_bytes);
     hewn_json_object(&json, "counts_before");
     hewn_json_unsigned(&json, "vertices", report->vertices_before);
     hewn_json_unsigned(&json, "faces", report->faces_before);

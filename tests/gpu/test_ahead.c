@@ -1,9 +1,9 @@
 /* Machine code that is written before it is needed: programs give what they should whether or not they had their turn,
  * what the driver has had is not done again, and the second device leaves nothing behind. */
+#include "cache_folder.h"
 #include "gpu_test.h"
 
 #include <dirent.h>
-#include <ftw.h>
 #include <unistd.h>
 
 #include "base/alloc.h"
@@ -26,29 +26,6 @@ typedef struct push {
     uint64_t to;
     uint32_t more, pad;
 } push;
-
-static char folder[64];
-
-static int make_folder(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/hewn-ahead-test-XXXXXX");
-    if (!mkdtemp(folder))
-        return -1;
-    return setenv("XDG_CACHE_HOME", folder, 1);
-}
-
-static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *place)
-{
-    (void)about, (void)kind, (void)place;
-    return remove(path);
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
-}
 
 static hewn_program *make(hewn_device *device, uint32_t number, bool soon)
 {

@@ -1,9 +1,9 @@
 /* The caches on disk: they may be damaged, shared, unwritable or absent, and nothing but time is ever lost. */
+#include "cache_folder.h"
 #include "gpu_test.h"
 
 #include <dirent.h>
 #include <fcntl.h>
-#include <ftw.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,29 +19,6 @@ static const char glsl_format[] = "#version 460\n"
                                   "layout(buffer_reference, scalar) buffer Words { uint at[]; };\n"
                                   "layout(push_constant, scalar) uniform P { Words to; };\n"
                                   "void main() { to.at[0] = %uu; }\n";
-
-static char folder[64];
-
-static int make_folder(void **state)
-{
-    (void)state;
-    strcpy(folder, "/tmp/hewn-cache-test-XXXXXX");
-    if (!mkdtemp(folder))
-        return -1;
-    return setenv("XDG_CACHE_HOME", folder, 1);
-}
-
-static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *place)
-{
-    (void)about, (void)kind, (void)place;
-    return remove(path);
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
-}
 
 static hewn_cache open_cache(void)
 {
