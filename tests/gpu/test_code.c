@@ -1,5 +1,6 @@
 /* Generated code as a whole: gradients against the oracle, one set of bits in all flavours, parameters without
  * recompilation, and large fields. */
+#include "../unit/test_data.h"
 #include "test_code_support.h"
 
 #include <dirent.h>
@@ -399,15 +400,10 @@ static hewn_node read_vm(hewn_field *field, char *text)
 static void prospero_compiles(void **test_state)
 {
     fixture *state = *test_state;
-    const char *data = getenv("HEWN_DATA"), *source = getenv("HEWN_SOURCE");
-    char path[1024], *text;
+    char path[8192], *text;
     size_t length;
-    snprintf(path, sizeof path, "%s%s/implicit/prospero.vm",
-             data     ? data
-             : source ? source
-                      : ".",
-             data ? "" : "/../shared/data");
-    if (hewn_file_read(path, (size_t)1 << 24, &text, &length, NULL) != HEWN_OK) {
+    if (!data_file(path, "implicit/prospero.vm") ||
+        hewn_file_read(path, (size_t)1 << 24, &text, &length, NULL) != HEWN_OK) {
         print_message("# skipped: %s is not there\n", path);
         skip();
     }

@@ -295,47 +295,11 @@ static void hard_trees_keep_their_cells_in_lists(void **state)
     gpu_test_close(&device, &messages);
 }
 
-/* An outline of many edges is read from a table of cells; walked over in a list, or written out, the mesh has the same
- * bytes. */
-static void outlines_are_the_same_by_tables(void **state)
-{
-    (void)state;
-    unsigned messages;
-    hewn_device *device = gpu_test_open(&messages);
-    hewn_field *field;
-    GPU_TEST_TRY(hewn_field_create(&field, &error));
-    hewn_node wheel = hewn_extrude(field, hewn_star(field, 40, 1.2, 0.9), 0.5);
-    hewn_node root = hewn_difference(field, wheel, hewn_extrude(field, hewn_regular_polygon(field, 6, 0.5), 1));
-    GPU_TEST_TRY(hewn_field_status(field, &error));
-    const hewn_extract_desc desc = {.bounds = bounds, .resolution = 50, .method = HEWN_METHOD_DC};
-    const hewn_code_desc hows[3] = {{0}, {.chained = true}, {.chained = true, .evaluation = HEWN_EVALUATION_STRAIGHT}};
-    hewn_triangles meshes[3];
-    for (int i = 0; i < 3; i++) {
-        hewn_extractor *extractor;
-        GPU_TEST_TRY(hewn_extractor_create_as(device, field, root, &hows[i], &extractor, &error));
-        assert_true(hewn_code_is_listed(extractor->code) == (i == 1));
-        GPU_TEST_TRY(hewn_extract(extractor, &desc, &meshes[i], NULL, &error));
-        hewn_extractor_destroy(&extractor);
-    }
-    for (int i = 1; i < 3; i++) {
-        assert_true(meshes[0].vertex_count > 1000 && meshes[0].vertex_count == meshes[i].vertex_count);
-        assert_memory_equal(meshes[0].positions, meshes[i].positions, 12 * meshes[0].vertex_count);
-        assert_memory_equal(meshes[0].normals, meshes[i].normals, 12 * meshes[0].vertex_count);
-        assert_true(meshes[0].triangle_count == meshes[i].triangle_count);
-        assert_memory_equal(meshes[0].indices, meshes[i].indices, 12 * meshes[0].triangle_count);
-    }
-    for (int i = 0; i < 3; i++)
-        hewn_triangles_destroy(&meshes[i]);
-    hewn_field_destroy(&field);
-    gpu_test_close(&device, &messages);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hard_trees_keep_their_cells),
         cmocka_unit_test(hard_trees_keep_their_cells_in_lists),
-        cmocka_unit_test(outlines_are_the_same_by_tables),
     };
     return cmocka_run_group_tests_name("hard_trees", tests, NULL, NULL);
 }

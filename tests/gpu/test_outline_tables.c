@@ -1,10 +1,11 @@
 /* Outlines of many sides are read from tables of cells: values, gradients and bounds have the bits that walking over
- * all sides gives. */
+ * all sides gives, and meshes have the same bytes. */
 #include "../unit/test_field_support.h"
 #include "gpu_test.h"
 
 #include "eval/internal.h"
 #include "hewn/hewn.h"
+#include "iso/extractor.h"
 
 enum { POINTS = 6000, BOXES = 600 };
 
@@ -191,10 +192,72 @@ static int tear_down(void **state)
     return 0;
 }
 
+static hewn_triangles mesh_of(fixture *state, hewn_field *field, hewn_node root, const hewn_code_desc *how)
+{
+    const hewn_extract_desc desc = {
+        .bounds = {{-1.6, -1.5, -1.55}, {1.5, 1.6, 1.55}}, .resolution = 50, .method = HEWN_METHOD_DC};
+    bool listed = how->chained && how->evaluation != HEWN_EVALUATION_STRAIGHT;
+    hewn_extractor *extractor;
+    hewn_triangles mesh;
+    GPU_TEST_TRY(hewn_extractor_create_as(state->device, field, root, how, &extractor, &error));
+    assert_true(hewn_code_is_listed(extractor->code) == listed);
+    GPU_TEST_TRY(hewn_extract(extractor, &desc, &mesh, NULL, &error));
+    hewn_extractor_destroy(&extractor);
+    return mesh;
+}
+
+/* As read from a table, and from a chain of sides that lists walk over or, for `ways` of 3, that is written out too. */
+static void check_meshes(fixture *state, hewn_field *field, hewn_node root, int ways)
+{
+    const hewn_code_desc hows[] = {{0}, {.chained = true}, {.chained = true, .evaluation = HEWN_EVALUATION_STRAIGHT}};
+    hewn_triangles whole = mesh_of(state, field, root, &hows[0]);
+    assert_true(whole.vertex_count > 1000);
+    for (int i = 1; i < ways; i++) {
+        hewn_triangles mesh = mesh_of(state, field, root, &hows[i]);
+        assert_true(mesh.vertex_count == whole.vertex_count && mesh.triangle_count == whole.triangle_count);
+        assert_memory_equal(mesh.positions, whole.positions, 12 * whole.vertex_count);
+        assert_memory_equal(mesh.normals, whole.normals, 12 * whole.vertex_count);
+        assert_memory_equal(mesh.indices, whole.indices, 12 * whole.triangle_count);
+        hewn_triangles_destroy(&mesh);
+    }
+    hewn_triangles_destroy(&whole);
+}
+
+static void meshes_have_the_same_bytes(void **test_state)
+{
+    fixture *state = *test_state;
+    hewn_field *field;
+    GPU_TEST_TRY(hewn_field_create(&field, &error));
+    hewn_node wheel = hewn_extrude(field, hewn_star(field, 40, 1.2, 0.9), 0.5);
+    hewn_node root = hewn_difference(field, wheel, hewn_extrude(field, hewn_regular_polygon(field, 6, 0.5), 1));
+    GPU_TEST_TRY(hewn_field_status(field, &error));
+    check_meshes(state, field, root, 3);
+    hewn_field_destroy(&field);
+}
+
+static void letters_have_the_same_bytes(void **test_state)
+{
+    fixture *state = *test_state;
+    const char *source = getenv("HEWN_SOURCE");
+    char path[4096];
+    hewn_font *font;
+    hewn_field *field;
+    snprintf(path, sizeof path, "%s/assets/scenes/fonts/DejaVuSerif-Bold.ttf", source ? source : ".");
+    GPU_TEST_TRY(hewn_font_open(path, 0, &font, &error));
+    GPU_TEST_TRY(hewn_field_create(&field, &error));
+    const hewn_text_desc desc = {.size = 0.9, .anchor = HEWN_TEXT_MIDDLE, .align = HEWN_ALIGN_CENTER};
+    hewn_node letters = hewn_extrude(field, hewn_font_text(field, font, "Rg&8", &desc), 0.4);
+    GPU_TEST_TRY(hewn_field_status(field, &error));
+    check_meshes(state, field, letters, 2);
+    hewn_field_destroy(&field);
+    hewn_font_destroy(&font);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(tables_give_the_bits_of_all_sides),
-                                       cmocka_unit_test(far_away_is_outside),
-                                       cmocka_unit_test(crowded_outlines_have_no_table)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tables_give_the_bits_of_all_sides), cmocka_unit_test(far_away_is_outside),
+        cmocka_unit_test(crowded_outlines_have_no_table), cmocka_unit_test(meshes_have_the_same_bytes),
+        cmocka_unit_test(letters_have_the_same_bytes)};
     return cmocka_run_group_tests_name("outline_tables", tests, set_up, tear_down);
 }

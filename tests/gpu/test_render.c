@@ -1,6 +1,7 @@
 /* Pictures: depths against dense marching by the oracle, device against host, planes against the unpruned shader. */
 #include <math.h>
 
+#include "../unit/test_data.h"
 #include "eval/code.h"
 #include "gpu_test_device.h"
 #include "hewn/render.h"
@@ -147,15 +148,11 @@ static void test_plane(void **state)
 {
     (void)state;
     enum { WIDTH = 256 };
-    const char *data = getenv("HEWN_DATA");
-    char path[512];
-    snprintf(path, sizeof path, "%s/implicit/prospero.vm", data ? data : "/nowhere");
-    FILE *file = fopen(path, "rb");
-    if (!file) {
+    char path[8192];
+    if (!data_file(path, "implicit/prospero.vm")) {
         print_message("# skipped: no %s\n", path);
         skip();
     }
-    fclose(file);
     hewn_scene *scene;
     GPU_TEST_TRY(hewn_scene_load(&(hewn_scene_desc){.path = path}, &scene, &error));
     const hewn_field *field = hewn_scene_field(scene);

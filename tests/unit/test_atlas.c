@@ -2,23 +2,33 @@
 #include <omp.h>
 
 #include "test_atlas_support.h"
+#include "test_data.h"
 
 #define SERIF "assets/scenes/fonts/DejaVuSerif-Bold.ttf"
 
 static track outline;
 
-static hewn_font *open_font(const char *variable, const char *fallback, const char *name)
+static hewn_font *open_font(const char *path)
 {
-    char path[4096];
     hewn_font *font = NULL;
-    const char *folder = getenv(variable);
-    snprintf(path, sizeof path, "%s/%s", folder ? folder : fallback, name);
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return NULL;
-    fclose(file);
     assert_int_equal(hewn_font_open(path, 0, &font, NULL), HEWN_OK);
     return font;
+}
+
+/* A font of the project. */
+static hewn_font *own_font(const char *name)
+{
+    char path[4096];
+    const char *source = getenv("HEWN_SOURCE");
+    snprintf(path, sizeof path, "%s/%s", source ? source : ".", name);
+    return open_font(path);
+}
+
+/* A font of the test data; NULL where that is absent. */
+static hewn_font *data_font(const char *name)
+{
+    char path[8192];
+    return data_file(path, name) ? open_font(path) : NULL;
 }
 
 static hewn_atlas make(hewn_font *font, const char *letters, hewn_atlas_desc desc)
@@ -97,7 +107,7 @@ static void check_font(hewn_font *font, double size, double worst)
 static void the_outline_comes_back(void **state)
 {
     (void)state;
-    hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
+    hewn_font *serif = own_font(SERIF);
     check_font(serif, 32, 0.25);
     hewn_font_destroy(&serif);
 }
@@ -105,8 +115,8 @@ static void the_outline_comes_back(void **state)
 static void other_fonts(void **state)
 {
     (void)state;
-    hewn_font *sans = open_font("HEWN_DATA", "/work/shared/data", "font/DejaVuSans.ttf");
-    hewn_font *thin = open_font("HEWN_DATA", "/work/shared/data", "font/cmr10.ttf");
+    hewn_font *sans = data_font("font/DejaVuSans.ttf");
+    hewn_font *thin = data_font("font/cmr10.ttf");
     if (sans)
         check_font(sans, 40, 0.12);
     if (thin) /* its hair lines are a 30th of the em */
@@ -168,8 +178,8 @@ static void check_areas(hewn_font *font, double size, double most, double most_o
 static void thin_strokes_keep_their_corners(void **state)
 {
     (void)state;
-    hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
-    hewn_font *thin = open_font("HEWN_DATA", "/work/shared/data", "font/cmr10.ttf");
+    hewn_font *serif = own_font(SERIF);
+    hewn_font *thin = data_font("font/cmr10.ttf");
     bool both = thin != NULL;
     check_areas(serif, 12, 0.14, 0.28);
     if (both)
@@ -185,7 +195,7 @@ static void thin_strokes_keep_their_corners(void **state)
 static void overlaps_are_filled(void **state)
 {
     (void)state;
-    hewn_font *shapes = open_font("HEWN_SOURCE", ".", "tests/fuzz/seeds_font/shapes.otf");
+    hewn_font *shapes = own_font("tests/fuzz/seeds_font/shapes.otf");
     hewn_atlas atlas = make(shapes, "XOSD", (hewn_atlas_desc){.type = HEWN_ATLAS_MTSDF, .size = 48, .range = 8});
     score own = look_at(shapes, "XOSD", &atlas, 3000);
     assert_true(own.worst < 0.05);
@@ -240,7 +250,7 @@ static void repeats(void **state)
     (void)state;
     enum { MANY = 100000 };
     static uint32_t characters[MANY];
-    hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
+    hewn_font *serif = own_font(SERIF);
     for (uint32_t i = 0; i < MANY; i++)
         characters[i] = i % 7 == 3 ? 0x4E00 : 'g' - i % 7;
     hewn_atlas_desc desc = {.characters = characters, .character_count = 7, .size = 12};
@@ -262,7 +272,7 @@ static void repeats(void **state)
 static void places(void **state)
 {
     (void)state;
-    hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
+    hewn_font *serif = own_font(SERIF);
     uint32_t characters[700];
     for (uint32_t i = 0; i < 700; i++)
         characters[i] = 0x20 + (i * 387) % 700; /* in no order; some are not in the font, some have the same glyph */
@@ -298,7 +308,7 @@ static void places(void **state)
 static void the_same_for_any_threads(void **state)
 {
     (void)state;
-    hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
+    hewn_font *serif = own_font(SERIF);
     hewn_atlas atlases[2];
     int before = omp_get_max_threads();
     for (int i = 0; i < 2; i++) {
@@ -328,8 +338,8 @@ static double kerning_of(const hewn_atlas *atlas, uint32_t first, uint32_t secon
 static void metrics_and_kerning(void **state)
 {
     (void)state;
-    hewn_font *shapes = open_font("HEWN_SOURCE", ".", "tests/fuzz/seeds_font/shapes.otf");
-    hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
+    hewn_font *shapes = own_font("tests/fuzz/seeds_font/shapes.otf");
+    hewn_font *serif = own_font(SERIF);
     hewn_atlas atlas = make(shapes, "DXOS", (hewn_atlas_desc){.size = 16});
     assert_int_equal(atlas.kerning_count, 1);
     assert_true(fabs(kerning_of(&atlas, 'D', 'X') + 0.3) < 1e-12);
@@ -381,7 +391,7 @@ static bool stop_at_atlas(void *user, const char *stage, double fraction)
 static void refusals(void **state)
 {
     (void)state;
-    hewn_font *serif = open_font("HEWN_SOURCE", ".", SERIF);
+    hewn_font *serif = own_font(SERIF);
     const uint32_t foreign[] = {0x4E00, 0x6F22}, beyond[] = {'a', 0x110000};
     const hewn_progress stop = {stop_at_atlas, NULL};
     refused(serif, (hewn_atlas_desc){.size = -1}, HEWN_INVALID_ARGUMENT, "em");

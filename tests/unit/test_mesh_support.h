@@ -16,6 +16,7 @@
 
 #include "base/alloc.h"
 #include "hewn/triangles.h"
+#include "test_data.h"
 
 typedef struct random_state {
     uint64_t at;
@@ -182,15 +183,6 @@ static inline void make_folder(char path[64])
 {
     snprintf(path, 64, "/tmp/hewn-test-XXXXXX");
     assert_non_null(mkdtemp(path));
-}
-
-/* The folder of test data, or NULL (and then the test skips). */
-static inline const char *data_folder(char path[4096])
-{
-    const char *given = getenv("HEWN_DATA"), *source = getenv("HEWN_SOURCE");
-    snprintf(path, 4096, "%s%s", given ? given : source ? source : ".", given ? "" : "/../shared/data");
-    struct stat status;
-    return stat(path, &status) == 0 && S_ISDIR(status.st_mode) ? path : NULL;
 }
 
 #endif

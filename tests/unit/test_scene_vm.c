@@ -1,4 +1,5 @@
 /* The .vm text: the four models that are at hand, every operation, and lines that are wrong. */
+#include "test_data.h"
 #include "test_scene.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -63,15 +64,11 @@ static void test_models(void **state)
 {
     (void)state;
     static const char *const names[] = {"hi.vm", "quarter.vm", "colonnade.vm", "prospero.vm"};
-    const char *data = getenv("HEWN_DATA");
     for (size_t i = 0; i < COUNT(names); i++) {
-        char path[512];
+        char name[64], path[8192];
         size_t length = 0;
-        if (data)
-            snprintf(path, sizeof path, "%s/implicit/%s", data, names[i]);
-        else
-            snprintf(path, sizeof path, "%s/../shared/data/implicit/%s", test_source_root(), names[i]);
-        char *text = test_read(path, &length);
+        snprintf(name, sizeof name, "implicit/%s", names[i]);
+        char *text = data_file(path, name) ? test_read(path, &length) : NULL;
         if (!text) {
             print_message("# %s is not at hand: skipped\n", path);
             skip();

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "hewn/hewn.h"
+#include "test_data.h"
 #include "vdb_look.h"
 
 static char folder[64];
@@ -126,11 +127,8 @@ static double back_again(const char *mesh, const char *volume, hewn_volume_repor
 static void meshes_come_back(void **state)
 {
     (void)state;
-    const char *data = getenv("HEWN_DATA"), *source = getenv("HEWN_SOURCE");
-    char mesh[1100], fallback[512];
-    snprintf(fallback, sizeof fallback, "%s/../shared/data", source ? source : ".");
-    snprintf(mesh, sizeof mesh, "%.1000s/mesh-scan/elephant.off", data ? data : fallback);
-    if (access(mesh, R_OK) != 0) {
+    char mesh[8192];
+    if (!data_file(mesh, "mesh-scan/elephant.off")) {
         print_message("# no data in %s\n", mesh);
         skip();
     }
