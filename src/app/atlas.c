@@ -4,7 +4,7 @@
 #include "app/app.h"
 #include "app/file_arguments.h"
 #include "app/number.h"
-#include "app/output_arguments.h"
+#include "app/path_arguments.h"
 #include "base/alloc.h"
 #include "base/error.h"
 
@@ -115,10 +115,10 @@ static hewn_result read_request(const hewn_arguments *arguments, atlas_request *
     desc->font = arguments->operands[0];
     desc->json = hewn_arguments_value(arguments, "json");
     request->quiet = hewn_arguments_has(arguments, "quiet");
-    HEWN_TRY(hewn_output_arguments_read(arguments, "image", "FILE", &desc->output, error));
+    HEWN_TRY(hewn_output_argument_read(arguments, "image", "FILE", &desc->output, error));
     if (!desc->font[0] || (desc->json && !desc->json[0]))
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
-    HEWN_TRY(hewn_output_arguments_spare_terminal(desc->output, "PNG", error));
+    HEWN_TRY(hewn_output_spare_terminal(desc->output, "PNG", error));
     HEWN_TRY(read_look(arguments, desc, error));
     return read_characters(arguments, request, error);
 }

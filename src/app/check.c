@@ -4,6 +4,7 @@
 #include "app/app.h"
 #include "app/certificate.h"
 #include "app/file_arguments.h"
+#include "app/path_arguments.h"
 #include "base/error.h"
 #include "hewn/check.h"
 #include "pipeline/examine.h"

@@ -2,28 +2,8 @@
 
 #include <string.h>
 
-#include "app/output_arguments.h"
+#include "app/path_arguments.h"
 #include "base/error.h"
-
-hewn_result hewn_input_argument_read(const hewn_arguments *arguments, const char **out, hewn_error *error)
-{
-    if (arguments->operand_count == 0)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "which file? Give its name");
-    if (arguments->operand_count > 1)
-        return hewn_fail(error, HEWN_INVALID_ARGUMENT, "one file at a time, please; '%s' is one too many",
-                         arguments->operands[1]);
-    *out = arguments->operands[0];
-    return **out ? HEWN_OK : hewn_fail(error, HEWN_INVALID_ARGUMENT, "a file needs a name");
-}
-
-hewn_result hewn_format_parse(const char *text, const char *option, hewn_mesh_format *out, hewn_error *error)
-{
-    *out = strpbrk(text, "./") ? HEWN_MESH_UNKNOWN : hewn_mesh_format_of(text);
-    if (*out != HEWN_MESH_UNKNOWN)
-        return HEWN_OK;
-    return hewn_fail(error, HEWN_INVALID_ARGUMENT, "%s is glb, gltf, obj, ply, stl, off or 3mf, not '%s'", option,
-                     text);
-}
 
 static hewn_result read_unit(const hewn_arguments *arguments, const char *name, const hewn_unit **out,
                              hewn_error *error)
@@ -60,7 +40,7 @@ hewn_result hewn_file_arguments_read(const hewn_arguments *arguments, hewn_file_
     HEWN_TRY(hewn_input_argument_read(arguments, &desc->input, error));
     if (from)
         HEWN_TRY(hewn_format_parse(from, "--from", &desc->from, error));
-    HEWN_TRY(hewn_output_arguments_read_mesh(arguments, &desc->output, &desc->report, &desc->to, error));
+    HEWN_TRY(hewn_mesh_output_read(arguments, &desc->output, &desc->report, &desc->to, error));
     HEWN_TRY(read_unit(arguments, "unit", &desc->unit, error));
     HEWN_TRY(read_axis(arguments, "up", &out->up, &desc->up, error));
     HEWN_TRY(read_unit(arguments, "to-unit", &desc->to_unit, error));

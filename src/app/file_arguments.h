@@ -53,12 +53,6 @@ typedef struct hewn_file_arguments {
     bool quiet;
 } hewn_file_arguments;
 
-/* The one operand; HEWN_INVALID_ARGUMENT for none, several or an empty one. */
-hewn_result hewn_input_argument_read(const hewn_arguments *arguments, const char **out, hewn_error *error);
-
-/* A mesh format by name, as --from and --to give it. HEWN_INVALID_ARGUMENT. */
-hewn_result hewn_format_parse(const char *text, const char *option, hewn_mesh_format *out, hewn_error *error);
-
 /* Takes the operand and all options above. HEWN_INVALID_ARGUMENT. */
 hewn_result hewn_file_arguments_read(const hewn_arguments *arguments, hewn_file_arguments *out, hewn_error *error);
 

@@ -5,6 +5,7 @@
 #include "app/app.h"
 #include "app/file_arguments.h"
 #include "app/mesh_info.h"
+#include "app/path_arguments.h"
 #include "app/scene_arguments.h"
 #include "app/volume_info.h"
 #include "base/error.h"

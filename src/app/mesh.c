@@ -4,7 +4,7 @@
 #include "app/app.h"
 #include "app/file_arguments.h"
 #include "app/number.h"
-#include "app/output_arguments.h"
+#include "app/path_arguments.h"
 #include "app/scene_arguments.h"
 #include "app/simplify_arguments.h"
 #include "app/smooth_arguments.h"
@@ -117,7 +117,7 @@ static hewn_result read_grid(const hewn_arguments *arguments, mesh_request *requ
 static hewn_result read_output(const hewn_arguments *arguments, mesh_request *request, hewn_error *error)
 {
     hewn_mesh_job_desc *desc = &request->desc;
-    HEWN_TRY(hewn_output_arguments_read_mesh(arguments, &desc->output, &desc->report, &desc->format, error));
+    HEWN_TRY(hewn_mesh_output_read(arguments, &desc->output, &desc->report, &desc->format, error));
     request->quiet = hewn_arguments_has(arguments, "quiet");
     request->watch = hewn_arguments_has(arguments, "watch");
     if (request->watch && (is_dash(desc->output) || is_dash(desc->scene.path)))

@@ -4,7 +4,7 @@
 #include "app/app.h"
 #include "app/file_arguments.h"
 #include "app/number.h"
-#include "app/output_arguments.h"
+#include "app/path_arguments.h"
 #include "app/scene_arguments.h"
 #include "app/sweep.h"
 #include "app/validation.h"
@@ -151,7 +151,7 @@ static hewn_result read_request(const hewn_arguments *arguments, render_request 
     HEWN_TRY(read_input(arguments, request, error));
     HEWN_TRY(read_look(arguments, request, error));
     HEWN_TRY(read_part(arguments, request, error));
-    HEWN_TRY(hewn_output_arguments_read(arguments, "picture", "FILE", &request->desc.output, error));
+    HEWN_TRY(hewn_output_argument_read(arguments, "picture", "FILE", &request->desc.output, error));
     HEWN_TRY(hewn_sweep_read(arguments, &request->scene, &request->sweep, error));
     bool mesh =
         request->desc.mesh != HEWN_MESH_UNKNOWN ||
@@ -160,7 +160,7 @@ static hewn_result read_request(const hewn_arguments *arguments, render_request 
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--sweep sets a parameter of a scene; a mesh has none");
     if (request->sweep.count > 0 && strcmp(request->desc.output, "-") == 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--sweep needs files, not standard output");
-    return hewn_output_arguments_spare_terminal(request->desc.output, "PNG", error);
+    return hewn_output_spare_terminal(request->desc.output, "PNG", error);
 }
 
 /* --- running --------------------------------------------------------------------------------------------------------

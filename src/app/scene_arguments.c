@@ -4,6 +4,7 @@
 
 #include "app/file_arguments.h"
 #include "app/number.h"
+#include "app/path_arguments.h"
 #include "base/alloc.h"
 #include "base/error.h"
 

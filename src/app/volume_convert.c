@@ -6,7 +6,7 @@
 
 #include "app/file_arguments.h"
 #include "app/number.h"
-#include "app/output_arguments.h"
+#include "app/path_arguments.h"
 #include "app/simplify_arguments.h"
 #include "app/smooth_arguments.h"
 #include "app/volume_arguments.h"
@@ -145,7 +145,7 @@ static hewn_result read_request(const hewn_arguments *arguments, hewn_volume_for
     desc->iso = out->volume.has_iso ? &out->volume.iso : NULL;
     HEWN_TRY(read_place(arguments, desc, error));
     HEWN_TRY(read_surface(arguments, desc, error));
-    HEWN_TRY(hewn_output_arguments_read_mesh(arguments, &desc->output, &desc->report, &desc->format, error));
+    HEWN_TRY(hewn_mesh_output_read(arguments, &desc->output, &desc->report, &desc->format, error));
     HEWN_TRY(read_steps(arguments, out, error));
     out->quiet = hewn_arguments_has(arguments, "quiet");
     return HEWN_OK;

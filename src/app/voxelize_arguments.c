@@ -6,7 +6,7 @@
 
 #include "app/file_arguments.h"
 #include "app/number.h"
-#include "app/output_arguments.h"
+#include "app/path_arguments.h"
 #include "app/scene_arguments.h"
 #include "base/error.h"
 
@@ -81,12 +81,12 @@ static hewn_result read_sizes(const hewn_arguments *arguments, request *wanted, 
 static hewn_result read_output(const hewn_arguments *arguments, hewn_voxelize_job_desc *desc, hewn_error *error)
 {
     const char *to = hewn_arguments_value(arguments, "to"), *unit = hewn_arguments_value(arguments, "unit");
-    HEWN_TRY(hewn_output_arguments_read(arguments, "volume", "FILE.vdb or FILE.nrrd", &desc->output, error));
+    HEWN_TRY(hewn_output_argument_read(arguments, "volume", "FILE.vdb or FILE.nrrd", &desc->output, error));
     if (to && strcmp(to, "vdb") != 0 && strcmp(to, "nrrd") != 0)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--to of a volume is vdb or nrrd, not '%s'", to);
     if (to)
         desc->format = strcmp(to, "vdb") == 0 ? HEWN_VOLUME_VDB : HEWN_VOLUME_NRRD;
-    HEWN_TRY(hewn_output_arguments_spare_terminal(desc->output, "a volume", error));
+    HEWN_TRY(hewn_output_spare_terminal(desc->output, "a volume", error));
     desc->unit = unit ? hewn_unit_find(unit) : NULL;
     if (unit && !desc->unit)
         return hewn_fail(error, HEWN_INVALID_ARGUMENT, "--unit is one of %s, not '%s'", hewn_unit_names(), unit);
