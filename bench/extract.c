@@ -1,6 +1,7 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process. usage: extract [--runs N] [--res N] [--peers 0] [--dual 0] [--as listed|straight] [--json FILE] [SCENE ...],
- * SCENE one of csg, gyroid, menger, random, random100, random10000. */
+ * process; and how its time grows. usage: extract [--runs N] [--res N] [--peers 0] [--dual 0] [--as listed|straight]
+ * [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger, random, random25, random50, random100, random10000,
+ * csg256, csg1024, csg2048; FILE is bench/results/extract.json where it is not given. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,14 +29,16 @@ typedef struct contest {
     size_t setting_count;
     const dense_field *dense; /* NULL: a heap of shapes */
     uint32_t resolution;      /* where none is asked for */
-    bool alone;               /* peers would take minutes */
+    bool alone;               /* peers would take minutes, or 34 GB */
 } contest;
+
+enum { CONTESTS = 11 };
 
 static const hewn_scene_setting level_four[] = {{"L", 4}};
 static const hewn_scene_setting hundred[] = {{"n", 100}}, thousand[] = {{"n", 1000}}, myriad[] = {{"n", 10000}},
                                 few[] = {{"n", 25}}, some[] = {{"n", 50}};
 
-static const contest contests[] = {
+static const contest contests[CONTESTS] = {
     {"csg", "csg.lua", NULL, 0, &dense_csg, 512, false},
     {"gyroid", "gyroid.lua", NULL, 0, &dense_gyroid, 512, false},
     {"menger", "menger.lua", level_four, 1, &dense_menger4, 512, false},
@@ -44,6 +47,9 @@ static const contest contests[] = {
     {"random25", "random.lua", few, 1, NULL, 256, false},
     {"random50", "random.lua", some, 1, NULL, 256, false},
     {"random10000", "random.lua", myriad, 1, NULL, 256, true},
+    {"csg256", "csg.lua", NULL, 0, NULL, 256, true},
+    {"csg1024", "csg.lua", NULL, 0, NULL, 1024, true},
+    {"csg2048", "csg.lua", NULL, 0, NULL, 2048, true},
 };
 
 typedef struct outcome {
@@ -55,6 +61,7 @@ typedef struct outcome {
     bool listed;
     uint64_t hewn_triangles, peer_triangles;
     double brick_bytes, brick_operations; /* a brick writes and reads; 0: not known */
+    bool ran;
 } outcome;
 
 typedef struct manner {
@@ -214,7 +221,8 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
     double unused[2];
     run_hewn(extractor, &bounds, resolution, HEWN_METHOD_MARCHING_CUBES, unused, out);
     out->first = hewn_clock_now() - compile;
-    if (how->dual)
+    bool dual = how->dual && !entry->alone;
+    if (dual)
         run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, unused, out);
     if (peers)
         warm_peers(&subject, resolution, values, out);
@@ -226,7 +234,7 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
             run_peers(&subject, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
         out->hewn_processor[i] = between - begin;
         out->peer_processor[i] = bench_processor_now() - between;
-        if (how->dual)
+        if (dual)
             run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, &out->dual[i], out);
     }
     free((void *)subject.heap);
@@ -284,6 +292,34 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
         fprintf(json, "}");
 }
 
+/* How many times as long as the first of two contests the second one takes; 0 where they did not both run. */
+static double times_as_long(const outcome *results, const char *first, const char *second, int runs)
+{
+    double seconds[2] = {0};
+    for (int i = 0; i < CONTESTS; i++)
+        for (int k = 0; k < 2; k++)
+            if (results[i].ran && strcmp(contests[i].name, k ? second : first) == 0)
+                seconds[k] = bench_median(results[i].hewn, runs);
+    return seconds[0] > 0 ? seconds[1] / seconds[0] : 0;
+}
+
+static void print_growth(FILE *json, const outcome *results, int runs)
+{
+    static const char *const steps[][2] = {
+        {"random100", "random"}, {"csg256", "csg"}, {"csg", "csg1024"}, {"csg1024", "csg2048"}};
+    bool first = true;
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        double times = times_as_long(results, steps[i][0], steps[i][1], runs);
+        if (!(times > 0))
+            continue;
+        printf("%s takes %.2f times as long as %s\n", steps[i][1], times, steps[i][0]);
+        if (json)
+            fprintf(json, "%s{\"from\": \"%s\", \"to\": \"%s\", \"times\": %.3f}", first ? "" : ", ", steps[i][0],
+                    steps[i][1], times);
+        first = false;
+    }
+}
+
 /* How many processes want the processors, on average over a minute; negative: not known. */
 static double machine_load(void)
 {
@@ -299,30 +335,46 @@ static bool wanted(const contest *entry, int argc, char **argv, int from)
     return from >= argc;
 }
 
+/* What the command line asks for. */
+typedef struct request {
+    int runs, first_scene; /* the latter of the arguments */
+    uint32_t resolution;
+    manner how;
+    const char *json;
+} request;
+
+static request read_request(int argc, char **argv)
+{
+    request out = {5, 1, 0, {HEWN_EVALUATION_AUTO, true, true}, "bench/results/extract.json"};
+    for (; out.first_scene + 1 < argc && strncmp(argv[out.first_scene], "--", 2) == 0; out.first_scene += 2) {
+        const char *name = argv[out.first_scene], *value = argv[out.first_scene + 1];
+        if (strcmp(name, "--runs") == 0)
+            out.runs = atoi(value);
+        else if (strcmp(name, "--res") == 0)
+            out.resolution = (uint32_t)atoi(value);
+        else if (strcmp(name, "--peers") == 0)
+            out.how.peers = atoi(value) != 0;
+        else if (strcmp(name, "--dual") == 0)
+            out.how.dual = atoi(value) != 0;
+        else if (strcmp(name, "--as") == 0)
+            out.how.evaluation = strcmp(value, "listed") == 0     ? HEWN_EVALUATION_LISTED
+                                 : strcmp(value, "straight") == 0 ? HEWN_EVALUATION_STRAIGHT
+                                                                  : HEWN_EVALUATION_AUTO;
+        else if (strcmp(name, "--json") == 0)
+            out.json = value;
+    }
+    out.runs = out.runs < 1 ? 1 : out.runs > MOST_RUNS ? MOST_RUNS : out.runs;
+    return out;
+}
+
 int main(int argc, char **argv)
 {
     const char *folder = getenv("HEWN_SCENES");
-    int runs = 5, at = 1;
-    uint32_t wanted_resolution = 0;
-    manner how = {HEWN_EVALUATION_AUTO, true, true};
-    FILE *json = NULL;
-    for (; at + 1 < argc && strncmp(argv[at], "--", 2) == 0; at += 2) {
-        if (strcmp(argv[at], "--runs") == 0)
-            runs = atoi(argv[at + 1]);
-        else if (strcmp(argv[at], "--res") == 0)
-            wanted_resolution = (uint32_t)atoi(argv[at + 1]);
-        else if (strcmp(argv[at], "--peers") == 0)
-            how.peers = atoi(argv[at + 1]) != 0;
-        else if (strcmp(argv[at], "--dual") == 0)
-            how.dual = atoi(argv[at + 1]) != 0;
-        else if (strcmp(argv[at], "--as") == 0)
-            how.evaluation = strcmp(argv[at + 1], "listed") == 0     ? HEWN_EVALUATION_LISTED
-                             : strcmp(argv[at + 1], "straight") == 0 ? HEWN_EVALUATION_STRAIGHT
-                                                                     : HEWN_EVALUATION_AUTO;
-        else if (strcmp(argv[at], "--json") == 0)
-            json = fopen(argv[at + 1], "w");
-    }
-    runs = runs < 1 ? 1 : runs > MOST_RUNS ? MOST_RUNS : runs;
+    const request asked = read_request(argc, argv);
+    const int runs = asked.runs;
+    FILE *json = fopen(asked.json, "w");
+    if (!json)
+        fprintf(stderr, "bench: %s cannot be written\n", asked.json);
     hewn_error error = {0};
     hewn_device *device;
     stop_on(hewn_device_create(NULL, &device, &error), &error);
@@ -338,19 +390,24 @@ int main(int argc, char **argv)
             json,
             "{\"device\": \"%s\", \"threads\": %d, \"copy_bytes_per_second\": %.3e, \"load\": %.1f,\n  \"scenes\": [",
             hewn_device_get_info(device)->name, THREADS, speed, machine_load());
+    static outcome results[CONTESTS];
     bool first = true;
-    for (size_t i = 0; i < sizeof contests / sizeof *contests; i++) {
-        if (!wanted(&contests[i], argc, argv, at))
+    for (int i = 0; i < CONTESTS; i++) {
+        if (!wanted(&contests[i], argc, argv, asked.first_scene))
             continue;
-        outcome result = {0};
-        uint32_t resolution = wanted_resolution ? wanted_resolution : contests[i].resolution;
-        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, &how, &result);
-        print_outcome(json, &contests[i], resolution, &result, runs, first);
+        outcome *result = &results[i];
+        uint32_t resolution = asked.resolution ? asked.resolution : contests[i].resolution;
+        run_contest(device, &contests[i], folder ? folder : "assets/scenes", resolution, runs, &asked.how, result);
+        print_outcome(json, &contests[i], resolution, result, runs, first);
+        result->ran = true;
         first = false;
         fflush(stdout);
     }
+    if (json)
+        fprintf(json, "\n  ], \"growth\": [");
+    print_growth(json, results, runs);
     if (json) {
-        fprintf(json, "\n  ], \"load_at_end\": %.1f}\n", machine_load());
+        fprintf(json, "], \"load_at_end\": %.1f}\n", machine_load());
         fclose(json);
     }
     hewn_device_destroy(&device);
