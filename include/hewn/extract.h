@@ -46,7 +46,7 @@ typedef struct hewn_extract_desc {
     double adaptive;
     /* Bytes that a run may take at once, of the device and the host together (of the host: what the run itself and a
      * sink take; not the program, the field, the driver and what they held before); 0: no limit. A single mesh that
-     * does not fit is HEWN_OUT_OF_DEVICE_MEMORY; hewn_extract_parts() makes the parts as large as fit. */
+     * does not fit is HEWN_OUT_OF_DEVICE_MEMORY; hewn_extract_parts() makes parts of which two fit. */
     uint64_t max_memory;
     const hewn_progress *progress;
 } hewn_extract_desc;
@@ -113,11 +113,13 @@ HEWN_API hewn_result hewn_extract(hewn_extractor *extractor, const hewn_extract_
                                   hewn_extract_stats *stats, hewn_error *error);
 
 /* The same mesh in parts, which a sink takes one by one: for meshes that are larger than memory. The field is evaluated
- * twice, first to count. Vertices and triangles are the bits that hewn_extract() gives, at the same places; so are the
- * statistics, but for the stages. Not for `adaptive` (HEWN_INVALID_ARGUMENT). HEWN_LIMIT for 2^32 - 1 vertices or more
- * and as hewn_extract(); HEWN_OUT_OF_DEVICE_MEMORY where even the least part needs more than `max_memory`, saying how
- * much; else as hewn_extract() and as the sink. After an error the sink may have taken some parts, also where there is
- * no surface but a cap (HEWN_BAD_INPUT). */
+ * twice, first to count. The sink takes a part on a thread of its own while the next one is made; both count for
+ * `max_memory`. Parts are the same in every run, however long the sink takes; without a limit there is one. When this
+ * returns the sink is done. Vertices and triangles are the bits that hewn_extract() gives, at the same places; so are
+ * the statistics, but for the stages. Not for `adaptive` (HEWN_INVALID_ARGUMENT). HEWN_LIMIT for 2^32 - 1 vertices or
+ * more and as hewn_extract(); HEWN_OUT_OF_DEVICE_MEMORY where even the least part needs more than `max_memory`, saying
+ * how much; else as hewn_extract() and as the sink. After an error the sink may have taken some parts, also where there
+ * is no surface but a cap (HEWN_BAD_INPUT). */
 HEWN_API hewn_result hewn_extract_parts(hewn_extractor *extractor, const hewn_extract_desc *desc,
                                         const hewn_mesh_sink *sink, hewn_extract_stats *stats, hewn_error *error);
 

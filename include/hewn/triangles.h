@@ -75,12 +75,15 @@ typedef struct hewn_mesh_part {
     uint64_t open_count;
 } hewn_mesh_part;
 
-/* Where the parts of a mesh go. What a part points to is there for the time of the call only. */
+/* Where the parts of a mesh go. What a part points to is there for the time of the call only. Calls of `take` come in
+ * the order of the parts, one at a time, but perhaps on another thread than the caller's, which makes the next part
+ * meanwhile. `bytes` comes on the caller's thread, and not while a part is taken. After `take` fails there are no more
+ * calls. */
 typedef struct hewn_mesh_sink {
     void *user;
     hewn_result (*take)(void *user, const hewn_mesh_part *part, hewn_error *error);
     /* Host memory that it will take at the most while it takes a part, with what it holds already; of NULL, what it
-     * holds. NULL: none. */
+     * holds, which is no more than it told of the last part. NULL: none. */
     uint64_t (*bytes)(void *user, const hewn_mesh_part *part);
 } hewn_mesh_sink;
 

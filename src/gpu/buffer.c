@@ -57,11 +57,23 @@ static hewn_result create_handle(hewn_device *device, uint64_t size, hewn_buffer
     return HEWN_OK;
 }
 
+static hewn_result check_limit(hewn_device *device, const char *what, uint64_t size, hewn_error *error)
+{
+    if (device->most_bytes == 0 || device->bytes + size <= device->most_bytes)
+        return HEWN_OK;
+    device->refused_bytes = device->bytes + size;
+    return hewn_fail(error, HEWN_OUT_OF_DEVICE_MEMORY,
+                     "%llu bytes for %s, with %llu bytes in use already, are more than the %llu that are allowed",
+                     (unsigned long long)size, what, (unsigned long long)device->bytes,
+                     (unsigned long long)device->most_bytes);
+}
+
 static hewn_result allocate(hewn_device *device, const char *what, hewn_buffer_use use, hewn_buffer *buffer,
                             hewn_error *error)
 {
     VkMemoryRequirements needs;
     device->vk.GetBufferMemoryRequirements(device->handle, buffer->handle, &needs);
+    HEWN_TRY(check_limit(device, what, needs.size, error)); /* perhaps a little more than was asked for */
     if (needs.size > device->info.max_allocation)
         return hewn_fail(error, HEWN_LIMIT, "%llu bytes for %s are more than the device allocates at once (%llu)",
                          (unsigned long long)needs.size, what, (unsigned long long)device->info.max_allocation);
@@ -107,13 +119,6 @@ hewn_result hewn_buffer_create(hewn_device *device, const char *what, uint64_t s
     if (size > device->info.max_allocation)
         return hewn_fail(error, HEWN_LIMIT, "%llu bytes for %s are more than the device allocates at once (%llu)",
                          (unsigned long long)size, what, (unsigned long long)device->info.max_allocation);
-    if (device->most_bytes != 0 && device->bytes + size > device->most_bytes) {
-        device->refused_bytes = device->bytes + size;
-        return hewn_fail(error, HEWN_OUT_OF_DEVICE_MEMORY,
-                         "%llu bytes for %s, with %llu bytes in use already, are more than the %llu that are allowed",
-                         (unsigned long long)size, what, (unsigned long long)device->bytes,
-                         (unsigned long long)device->most_bytes);
-    }
     /* Whole words, so that fills reach the end and shaders may read the last word. */
     uint64_t padded = size == 0 ? 4 : (size + 3) & ~(uint64_t)3;
     hewn_buffer buffer = {.size = size == 0 ? 4 : size};

@@ -103,27 +103,10 @@ hewn_result hewn_extraction_explain_empty(hewn_extraction *run, hewn_error *erro
 
 /* --- handing over ------------------------------------------------------------------------------------------------ */
 
-static hewn_result copy_home(hewn_device *device, hewn_buffer *buffer, hewn_error *error)
-{
-    hewn_buffer home = {0};
-    HEWN_TRY(hewn_buffer_create(device, "the mesh on the host", buffer->size, HEWN_BUFFER_READBACK, &home, error));
-    hewn_commands *commands;
-    hewn_result result = hewn_commands_begin(device, &commands, error);
-    if (result == HEWN_OK) {
-        hewn_commands_copy(commands, buffer, 0, &home, 0, buffer->size);
-        result = hewn_commands_submit(&commands, NULL, error);
-    }
-    hewn_buffer_destroy(device, result == HEWN_OK ? buffer : &home);
-    if (result == HEWN_OK)
-        *buffer = home;
-    return result;
-}
-
 static hewn_result hand_over(mapped_mesh *mesh, const hewn_surface *surface, hewn_triangles *out, hewn_error *error)
 {
     for (int i = 0; i < 3; i++)
-        if (!mesh->buffers[i].mapped)
-            HEWN_TRY(copy_home(mesh->device, &mesh->buffers[i], error));
+        HEWN_TRY(hewn_buffer_bring_home(mesh->device, "the mesh on the host", &mesh->buffers[i], error));
     *out = (hewn_triangles){.vertex_count = surface->vertex_count,
                             .triangle_count = surface->triangle_count,
                             .positions = mesh->buffers[0].mapped,

@@ -76,6 +76,10 @@ void hewn_workspace_clear(hewn_workspace *workspace);
 hewn_result hewn_workspace_read(hewn_workspace *workspace, const hewn_buffer *buffer, uint64_t offset, uint64_t bytes,
                                 const void **out, hewn_error *error);
 
+/* Brings a buffer to where the host reads it in place: where it lies elsewhere it becomes another one, of as many
+ * bytes. After an error it is as it was. */
+hewn_result hewn_buffer_bring_home(hewn_device *device, const char *what, hewn_buffer *buffer, hewn_error *error);
+
 /* The bricks that culling kept. */
 typedef struct hewn_bricks {
     uint32_t count;

@@ -2,15 +2,8 @@
 
 #include <string.h>
 
-#include "base/alloc.h"
 #include "base/error.h"
 #include "eval/lists.h"
-
-void hewn_part_clear(hewn_part *part)
-{
-    hewn_free(part->numbers);
-    *part = (hewn_part){0};
-}
 
 uint64_t hewn_part_own_bricks(const hewn_part *part)
 {
@@ -41,13 +34,14 @@ static hewn_result find_bricks(hewn_extraction *run, hewn_part *part, hewn_error
 {
     uint64_t count = part->bricks.count;
     const void *packed;
+    hewn_buffer *home;
     HEWN_TRY(hewn_workspace_read(&run->workspace, part->bricks.list, 0, 4 * count, &packed, error));
+    HEWN_TRY(hewn_workspace_take(&run->workspace, "numbers of bricks", 4 * count, HEWN_BUFFER_READBACK, &home, error));
+    uint32_t *numbers = home->mapped;
     part->packed = packed;
-    part->numbers = hewn_alloc(count, sizeof *part->numbers);
-    if (!part->numbers)
-        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory for %llu bricks", (unsigned long long)count);
+    part->numbers = numbers;
     for (uint64_t i = 0; i < count; i++)
-        part->numbers[i] = hewn_region_number(&part->region, part->packed[i]);
+        numbers[i] = hewn_region_number(&part->region, part->packed[i]);
     uint64_t *own = part->surface.own.bricks;
     own[0] = lower_bound(part->numbers, count, part->region.begin);
     own[1] = lower_bound(part->numbers, count, part->region.end);

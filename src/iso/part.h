@@ -9,17 +9,16 @@ typedef struct hewn_part {
     hewn_region region;
     hewn_bricks bricks;
     hewn_surface surface;    /* its counts are those of all bricks, own.vertices and the like those of its own */
-    uint32_t *numbers;       /* of the bricks, ascending */
+    const uint32_t *numbers; /* of the bricks, ascending */
     const uint32_t *packed;  /* coordinates of the bricks, */
     const uint32_t *bases;   /* and the first vertex of each: on edges, or by the dual methods in cells */
     uint64_t named_vertices; /* those that bases tell of: all but those in the cells of mc33 */
 } hewn_part;
 
-/* Culls and classifies a part, in buffers of the run's workspace. `counts_only` leaves out what only emission needs. An
- * empty part has no bricks of its own. Clear it also after an error. */
+/* Culls and classifies a part; all that it holds lies in buffers of the run's workspace. `counts_only` leaves out what
+ * only emission needs. An empty part has no bricks of its own. */
 hewn_result hewn_part_open(hewn_extraction *run, const hewn_region *region, bool counts_only, hewn_part *out,
                            hewn_error *error);
-void hewn_part_clear(hewn_part *part);
 
 /* The number of own bricks, and the first vertex of brick `at`, which may be the one past the last. */
 uint64_t hewn_part_own_bricks(const hewn_part *part);

@@ -37,6 +37,24 @@ hewn_result hewn_workspace_read(hewn_workspace *workspace, const hewn_buffer *bu
     return hewn_commands_submit(&commands, NULL, error);
 }
 
+hewn_result hewn_buffer_bring_home(hewn_device *device, const char *what, hewn_buffer *buffer, hewn_error *error)
+{
+    hewn_buffer home;
+    hewn_commands *commands;
+    if (buffer->mapped)
+        return HEWN_OK;
+    HEWN_TRY(hewn_buffer_create(device, what, buffer->size, HEWN_BUFFER_READBACK, &home, error));
+    hewn_result result = hewn_commands_begin(device, &commands, error);
+    if (result == HEWN_OK) {
+        hewn_commands_copy(commands, buffer, 0, &home, 0, buffer->size);
+        result = hewn_commands_submit(&commands, NULL, error);
+    }
+    hewn_buffer_destroy(device, result == HEWN_OK ? buffer : &home);
+    if (result == HEWN_OK)
+        *buffer = home;
+    return result;
+}
+
 hewn_dispatch_size hewn_groups_for(uint64_t count, uint32_t size)
 {
     uint64_t groups = (count + size - 1) / size;

@@ -3,6 +3,7 @@
 #include <malloc.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "eval/lists.h"
 #include "gpu/device.h"
@@ -25,17 +26,20 @@ void *__wrap_calloc(size_t count, size_t size);
 void *__wrap_realloc(void *block, size_t size);
 void __wrap_free(void *block);
 
+/* Several threads allocate: all of this is read and written one at a time. */
+enum { MEMORIES = 256 };
 static struct {
     bool on;
-    int64_t bytes, peak; /* of the heap since it was switched on; with the device's, the most */
+    int64_t bytes, peak; /* of heap and device since it was switched on, and the most of that */
     uint64_t left;       /* allocations that may yet succeed */
-    int64_t device_before;
+    VkDeviceMemory memories[MEMORIES];
+    int64_t sizes[MEMORIES]; /* 0: there is none */
 } heap;
 
-static void note(void)
+static void note(int64_t bytes)
 {
-    int64_t now = heap.bytes + (device ? (int64_t)device->bytes : 0) - heap.device_before;
-    heap.peak = now > heap.peak ? now : heap.peak;
+    heap.bytes += bytes;
+    heap.peak = heap.bytes > heap.peak ? heap.bytes : heap.peak;
 }
 
 static bool may_allocate(void)
@@ -56,10 +60,7 @@ static void add(void *block, int sign)
     if (!heap.on || !block)
         return;
 #pragma omp critical(test_heap)
-    {
-        heap.bytes += sign * (int64_t)malloc_usable_size(block);
-        note();
-    }
+    note(sign * (int64_t)malloc_usable_size(block));
 }
 
 void *__wrap_malloc(size_t size)
@@ -93,25 +94,49 @@ void __wrap_free(void *block)
 }
 
 static PFN_vkAllocateMemory real_allocate;
+static PFN_vkFreeMemory real_release;
 
 static VKAPI_ATTR VkResult VKAPI_CALL watched_allocate(VkDevice handle, const VkMemoryAllocateInfo *info,
                                                        const VkAllocationCallbacks *callbacks, VkDeviceMemory *out)
 {
     if (!may_allocate())
         return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    int64_t now = heap.bytes + (int64_t)(device->bytes + info->allocationSize) - heap.device_before;
-    heap.peak = now > heap.peak ? now : heap.peak;
-    return real_allocate(handle, info, callbacks, out);
+    VkResult result = real_allocate(handle, info, callbacks, out);
+    if (result != VK_SUCCESS)
+        return result;
+#pragma omp critical(test_heap)
+    {
+        int at = 0;
+        while (at < MEMORIES - 1 && heap.sizes[at] > 0)
+            at++;
+        heap.memories[at] = *out;
+        heap.sizes[at] = (int64_t)info->allocationSize;
+        note(heap.sizes[at]);
+    }
+    return result;
+}
+
+static VKAPI_ATTR void VKAPI_CALL watched_release(VkDevice handle, VkDeviceMemory memory,
+                                                  const VkAllocationCallbacks *callbacks)
+{
+#pragma omp critical(test_heap)
+    for (int at = 0; at < MEMORIES; at++)
+        if (heap.sizes[at] > 0 && heap.memories[at] == memory) {
+            note(-heap.sizes[at]);
+            heap.sizes[at] = 0;
+        }
+    real_release(handle, memory, callbacks);
 }
 
 /* From here on `count` allocations of heap and device succeed. */
 static void watch_memory(uint64_t count)
 {
-    if (device->vk.AllocateMemory != watched_allocate)
-        real_allocate = device->vk.AllocateMemory;
+    real_allocate = device->vk.AllocateMemory;
+    real_release = device->vk.FreeMemory;
     device->vk.AllocateMemory = watched_allocate;
+    device->vk.FreeMemory = watched_release;
+    memset(heap.sizes, 0, sizeof heap.sizes);
     heap.bytes = heap.peak = 0;
-    heap.device_before = (int64_t)device->bytes;
     heap.left = count;
     heap.on = true;
 }
@@ -120,6 +145,7 @@ static void watch_no_more(void)
 {
     heap.on = false;
     device->vk.AllocateMemory = real_allocate;
+    device->vk.FreeMemory = real_release;
 }
 
 /* --- fields ------------------------------------------------------------------------------------------------------- */
@@ -188,7 +214,9 @@ static hewn_node make_boxes(hewn_field *field)
 
 /* --- putting parts together --------------------------------------------------------------------------------------- */
 
-/* Takes parts into arrays that are as long as the whole, and certifies them. */
+enum { MOST_PARTS = 4096 };
+
+/* Takes parts into arrays that are as long as the whole, and certifies them. It may take its time, and hold memory. */
 typedef struct collector {
     const hewn_triangles *whole;
     float *positions, *normals;
@@ -198,6 +226,10 @@ typedef struct collector {
     hewn_certifier *certifier;
     uint64_t parts, fail_at; /* 0: never */
     hewn_result failure;
+    unsigned pause;              /* microseconds a part, more for every third one */
+    uint64_t a_vertex, held;     /* bytes that are held from part to part for each vertex that came */
+    void *blocks[MOST_PARTS];    /* they are */
+    uint64_t firsts[MOST_PARTS]; /* the triangle that each part begins with */
 } collector;
 
 static collector make_collector(const hewn_triangles *whole)
@@ -219,6 +251,8 @@ static void free_collector(collector *made)
     free(made->indices);
     free(made->has_vertex);
     free(made->has_triangle);
+    for (uint64_t i = 0; i < made->parts && i < MOST_PARTS; i++)
+        free(made->blocks[i]);
     hewn_certifier_destroy(&made->certifier);
 }
 
@@ -231,14 +265,35 @@ static void mark(uint8_t *has, uint64_t first, uint64_t count, uint64_t most)
     }
 }
 
+static uint64_t hoard_of(const collector *of, const hewn_mesh_part *part)
+{
+    return of->a_vertex * (part->vertices[0].count + part->vertices[1].count);
+}
+
+/* Memory that stays until the collector goes. */
+static hewn_result hoard(collector *to, const hewn_mesh_part *part)
+{
+    uint64_t bytes = hoard_of(to, part);
+    void **block = &to->blocks[to->parts - 1];
+    *block = bytes > 0 ? malloc(bytes) : NULL;
+    to->held += *block ? malloc_usable_size(*block) : 0;
+    return bytes == 0 || *block ? HEWN_OK : HEWN_OUT_OF_MEMORY;
+}
+
 static hewn_result take(void *user, const hewn_mesh_part *part, hewn_error *error)
 {
     collector *to = user;
+    assert_true(to->parts < MOST_PARTS);
+    to->firsts[to->parts] = part->triangles[0].first;
     if (++to->parts == to->fail_at) {
         if (error)
             error->code = to->failure;
         return to->failure;
     }
+    if (to->pause > 0)
+        usleep(to->pause * (1 + 4 * (to->parts % 3 == 0)));
+    if (hoard(to, part) != HEWN_OK)
+        return HEWN_OUT_OF_MEMORY;
     for (int i = 0; i < 2; i++) {
         const hewn_vertex_run *vertices = &part->vertices[i];
         const hewn_triangle_run *triangles = &part->triangles[i];
@@ -259,7 +314,8 @@ static hewn_result take(void *user, const hewn_mesh_part *part, hewn_error *erro
 
 static uint64_t bytes(void *user, const hewn_mesh_part *part)
 {
-    return hewn_certifier_bytes(((collector *)user)->certifier, part);
+    const collector *of = user;
+    return hewn_certifier_bytes(of->certifier, part) + of->held + (part ? hoard_of(of, part) + 32 : 0);
 }
 
 static void assert_same_certificate(const hewn_certificate *a, const hewn_certificate *b)
@@ -310,34 +366,41 @@ static whole make_whole(const subject *made, const hewn_extract_desc *desc)
     return out;
 }
 
-/* Makes the mesh in parts and returns how many there were. */
-static uint64_t compare(const subject *made, const hewn_extract_desc *desc, uint64_t limit, const whole *expected)
+/* Makes the mesh in parts for a collector. */
+static void collect(const subject *made, const hewn_extract_desc *desc, uint64_t limit, const whole *expected,
+                    collector *to, hewn_extract_stats *stats)
 {
     hewn_extract_desc limited = *desc;
-    hewn_extract_stats stats;
     hewn_certificate certificate;
-    collector to = make_collector(&expected->mesh);
-    const hewn_mesh_sink sink = {.user = &to, .take = take, .bytes = bytes};
+    const hewn_mesh_sink sink = {.user = to, .take = take, .bytes = bytes};
     limited.max_memory = limit;
     uint64_t device_bytes = device->bytes;
     watch_memory(UINT64_MAX);
-    GPU_TEST_TRY(hewn_extract_parts(made->extractor, &limited, &sink, &stats, &error));
+    GPU_TEST_TRY(hewn_extract_parts(made->extractor, &limited, &sink, stats, &error));
     watch_no_more();
-    assert_true(limit == 0 || stats.peak_memory <= limit);
+    assert_true(limit == 0 || stats->peak_memory <= limit);
     if (limit > 0 && heap.peak > (int64_t)limit)
         fail_msg("%lld bytes were in use, %llu are allowed", (long long)heap.peak, (unsigned long long)limit);
     assert_int_equal(device->bytes, device_bytes);
-    GPU_TEST_TRY(hewn_certifier_finish(to.certifier, &certificate, &error));
-    assert_int_equal(stats.parts, to.parts);
-    assert_int_equal(stats.vertices, expected->mesh.vertex_count);
-    assert_int_equal(stats.triangles, expected->mesh.triangle_count);
-    assert_int_equal(to.vertices, expected->mesh.vertex_count);
-    assert_int_equal(to.triangles, expected->mesh.triangle_count);
-    assert_memory_equal(to.positions, expected->mesh.positions, 12 * to.vertices);
-    assert_memory_equal(to.normals, expected->mesh.normals, 12 * to.vertices);
-    assert_memory_equal(to.indices, expected->mesh.indices, 12 * to.triangles);
+    GPU_TEST_TRY(hewn_certifier_finish(to->certifier, &certificate, &error));
+    assert_int_equal(stats->parts, to->parts);
+    assert_int_equal(stats->vertices, expected->mesh.vertex_count);
+    assert_int_equal(stats->triangles, expected->mesh.triangle_count);
+    assert_int_equal(to->vertices, expected->mesh.vertex_count);
+    assert_int_equal(to->triangles, expected->mesh.triangle_count);
+    assert_memory_equal(to->positions, expected->mesh.positions, 12 * to->vertices);
+    assert_memory_equal(to->normals, expected->mesh.normals, 12 * to->vertices);
+    assert_memory_equal(to->indices, expected->mesh.indices, 12 * to->triangles);
     assert_same_certificate(&certificate, &expected->certificate);
-    assert_same_stats(&stats, &expected->stats);
+    assert_same_stats(stats, &expected->stats);
+}
+
+/* Makes the mesh in parts and returns how many there were. */
+static uint64_t compare(const subject *made, const hewn_extract_desc *desc, uint64_t limit, const whole *expected)
+{
+    hewn_extract_stats stats;
+    collector to = make_collector(&expected->mesh);
+    collect(made, desc, limit, expected, &to, &stats);
     free_collector(&to);
     return stats.parts;
 }
@@ -426,6 +489,53 @@ static void test_levels(void **state)
                     compare_limits(&made, &desc, LIMITS(900000));
             }
     free_subject(&made);
+}
+
+/* A device whose memory the host does not reach, as graphics cards are. */
+static void test_memory_out_of_reach(void **state)
+{
+    (void)state;
+    const hewn_device_kind kind = device->info.kind;
+    for (size_t m = 0; m < METHODS; m++) {
+        hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 48, .method = methods[m]};
+        device->info.kind = HEWN_DEVICE_DISCRETE;
+        subject made = make_subject(make_part, HEWN_EVALUATION_STRAIGHT);
+        compare_limits(&made, &desc, LIMITS(600000));
+        free_subject(&made);
+        device->info.kind = kind;
+    }
+}
+
+/* Sinks that hold more with each part leave less for the next ones. However long they take, parts are the same. */
+static void test_sinks_that_hold_memory(void **state)
+{
+    (void)state;
+    static const unsigned pauses[] = {0, 2000, 300};
+    for (size_t m = 0; m < METHODS; m++) {
+        subject made = make_subject(make_part, HEWN_EVALUATION_STRAIGHT);
+        hewn_extract_desc desc = {.bounds = unit_cube, .resolution = 64, .method = methods[m]};
+        whole expected = make_whole(&made, &desc);
+        uint64_t a_vertex = 1000000 / expected.mesh.vertex_count, parts = 0, peak = 0;
+        uint64_t *firsts = calloc(MOST_PARTS, sizeof *firsts);
+        for (size_t i = 0; i < sizeof pauses / sizeof *pauses; i++) {
+            hewn_extract_stats stats;
+            collector to = make_collector(&expected.mesh);
+            to.pause = pauses[i];
+            to.a_vertex = a_vertex;
+            collect(&made, &desc, 1900000, &expected, &to, &stats);
+            assert_true(to.held >= a_vertex * to.vertices && stats.parts > 4);
+            assert_true(i == 0 || (stats.parts == parts && stats.peak_memory == peak));
+            if (i > 0)
+                assert_memory_equal(firsts, to.firsts, parts * sizeof *firsts);
+            parts = stats.parts;
+            peak = stats.peak_memory;
+            memcpy(firsts, to.firsts, sizeof to.firsts);
+            free_collector(&to);
+        }
+        free(firsts);
+        hewn_triangles_destroy(&expected.mesh);
+        free_subject(&made);
+    }
 }
 
 /* --- what goes wrong ---------------------------------------------------------------------------------------------- */
@@ -597,6 +707,8 @@ int main(void)
         cmocka_unit_test(test_lists),
         cmocka_unit_test(test_rough),
         cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_memory_out_of_reach),
+        cmocka_unit_test(test_sinks_that_hold_memory),
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_failing_sink),
         cmocka_unit_test(test_no_surface),
