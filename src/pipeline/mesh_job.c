@@ -151,6 +151,20 @@ static hewn_result compile(mesh_job *job, hewn_error *error)
     return HEWN_OK;
 }
 
+/* Those of an extraction that began then, and what was done with its parts beside them. */
+static void add_stages(mesh_job *job, double begin)
+{
+    const hewn_extract_stats *stats = &job->report->extraction;
+    const hewn_parts_span *certified = &job->parts.certified, *stored = &job->parts.stored;
+    for (uint32_t i = 0; i < stats->stage_count; ++i)
+        hewn_report_add_stage(job->report, stats->stages[i].name, begin + stats->stages[i].begin,
+                              begin + stats->stages[i].end);
+    if (job->desc->max_memory == 0)
+        return;
+    hewn_report_add_stage(job->report, "certify", certified->begin - job->began, certified->end - job->began);
+    hewn_report_add_stage(job->report, "store", stored->begin - job->began, stored->end - job->began);
+}
+
 static hewn_result extract(mesh_job *job, const hewn_box *bounds, hewn_error *error)
 {
     const hewn_mesh_job_desc *desc = job->desc;
@@ -173,9 +187,7 @@ static hewn_result extract(mesh_job *job, const hewn_box *bounds, hewn_error *er
     else
         HEWN_TRY(hewn_extract(job->kept->extractor, &extract_desc, &job->triangles, stats, error));
     job->report->method = stats->method;
-    for (uint32_t i = 0; i < stats->stage_count; ++i)
-        hewn_report_add_stage(job->report, stats->stages[i].name, begin + stats->stages[i].begin,
-                              begin + stats->stages[i].end);
+    add_stages(job, begin);
     return HEWN_OK;
 }
 

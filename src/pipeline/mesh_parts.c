@@ -1,15 +1,58 @@
 #include "pipeline/mesh_parts.h"
 
+#include <pthread.h>
+
+#include "base/clock.h"
 #include "base/error.h"
 
 /* Pages are let go every so many looks at the callback. */
 enum { CALLS = 16 };
 
+/* A part on its way to disk. */
+typedef struct storing {
+    hewn_mesh_parts *parts;
+    const hewn_mesh_part *part;
+    hewn_result result;
+    hewn_error error;
+} storing;
+
+static void begin_span(hewn_parts_span *span)
+{
+    span->begin = span->begin > 0 ? span->begin : hewn_clock_now();
+}
+
+static void *store(void *user)
+{
+    storing *job = user;
+    hewn_mesh_parts *parts = job->parts;
+    begin_span(&parts->stored);
+    job->result = hewn_spool_take(parts->spool, job->part, &job->error);
+    parts->stored.end = hewn_clock_now();
+    return NULL;
+}
+
+static hewn_result certify(hewn_mesh_parts *parts, const hewn_mesh_part *part, hewn_error *error)
+{
+    begin_span(&parts->certified);
+    hewn_result result = hewn_certifier_take(parts->certifier, part, error);
+    parts->certified.end = hewn_clock_now();
+    return result;
+}
+
+/* Storing waits for the disk and certifying for memory: neither takes memory of the other's. */
 static hewn_result take(void *user, const hewn_mesh_part *part, hewn_error *error)
 {
-    hewn_mesh_parts *parts = user;
-    HEWN_TRY(hewn_certifier_take(parts->certifier, part, error));
-    return hewn_spool_take(parts->spool, part, error);
+    storing job = {.parts = user, .part = part};
+    pthread_t thread;
+    bool threaded = pthread_create(&thread, NULL, store, &job) == 0;
+    hewn_result result = certify(job.parts, part, error);
+    if (threaded)
+        pthread_join(thread, NULL);
+    else
+        store(&job);
+    if (result == HEWN_OK && job.result != HEWN_OK && error)
+        *error = job.error;
+    return result == HEWN_OK ? job.result : result;
 }
 
 static uint64_t bytes(void *user, const hewn_mesh_part *part)

@@ -1,11 +1,16 @@
 /* A mesh that is larger than the memory it may take: made in parts, certified as they come, and laid on disk until it
- * is written. */
+ * is written. A part is certified and stored at the same time. */
 #ifndef HEWN_SRC_PIPELINE_MESH_PARTS_H
 #define HEWN_SRC_PIPELINE_MESH_PARTS_H
 
 #include "hewn/extract.h"
 #include "hewn/volume_extract.h"
 #include "pipeline/spool.h"
+
+/* Clock times of the first part's beginning and the last part's end. */
+typedef struct hewn_parts_span {
+    double begin, end;
+} hewn_parts_span;
 
 typedef struct hewn_mesh_parts {
     hewn_spool *spool;
@@ -14,6 +19,7 @@ typedef struct hewn_mesh_parts {
     uint32_t calls;
     hewn_progress progress;
     hewn_triangles triangles; /* a view */
+    hewn_parts_span certified, stored;
 } hewn_mesh_parts;
 
 /* Extracts beside `output`, and certifies. Clear it also after an error. As hewn_extract_parts(), and HEWN_IO. */

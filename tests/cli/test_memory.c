@@ -110,6 +110,39 @@ static void test_standard_output(void **state)
     run_folder_destroy(folder);
 }
 
+static double stage_time(const char *report, const char *name, const char *which)
+{
+    char path[64];
+    for (size_t i = 0; i < json_count(report, "stages"); i++) {
+        snprintf(path, sizeof path, "stages.%zu.name", i);
+        if (strcmp(json_string(report, path), name) != 0)
+            continue;
+        snprintf(path, sizeof path, "stages.%zu.%s", i, which);
+        return json_number(report, path);
+    }
+    fail_msg("there is no stage %s", name);
+    return 0;
+}
+
+/* The first part is certified and stored before the last one is made. */
+static void test_stages_overlap(void **state)
+{
+    (void)state;
+    static const char *const beside[] = {"certify", "store"};
+    char *folder = run_folder_create();
+    const wanted csg = {"assets/scenes/csg.lua", "mc", "ply", "128", NULL, NULL};
+    char *report = mesh(folder, &csg, "parts", "2M");
+    assert_true(json_number(report, "parts") > 3);
+    for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
+        double begin = stage_time(report, beside[i], "begin"), end = stage_time(report, beside[i], "end");
+        assert_true(begin < end && begin > stage_time(report, "extract", "begin"));
+        assert_true(begin < stage_time(report, "extract", "end"));
+        assert_true(end <= stage_time(report, "write", "begin"));
+    }
+    free(report);
+    run_folder_destroy(folder);
+}
+
 /* --- failures ----------------------------------------------------------------------------------------------------- */
 
 static void refuse(int code, const char *says, run_desc desc)
@@ -148,11 +181,9 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_format),
-        cmocka_unit_test(test_every_method),
-        cmocka_unit_test(test_lists),
-        cmocka_unit_test(test_standard_output),
-        cmocka_unit_test(test_sizes_that_make_no_sense),
+        cmocka_unit_test(test_every_format),   cmocka_unit_test(test_every_method),
+        cmocka_unit_test(test_lists),          cmocka_unit_test(test_standard_output),
+        cmocka_unit_test(test_stages_overlap), cmocka_unit_test(test_sizes_that_make_no_sense),
         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests_name("memory", tests, NULL, NULL);

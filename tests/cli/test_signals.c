@@ -45,6 +45,29 @@ static void test_cancel_in_each_stage(void **state)
     run_folder_destroy(folder);
 }
 
+/* Nor is anything left of a mesh in parts, while some are made and others go to disk. */
+static void test_cancel_in_parts(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *stage;
+        int signal;
+    } cases[] = {{"count", SIGTERM}, {"extract", SIGINT}, {"extract", SIGTERM}, {"write", SIGTERM}};
+    char *folder = run_folder_create();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        run_desc desc = {.arguments = {"mesh", menger(), "-o", "a.obj", "--res", "300", "--max-memory", "64M"},
+                         .folder = folder,
+                         .changes = {"TERM=xterm"},
+                         .terminal = true};
+        run_process process = run_start(&desc);
+        run_await(&process, cases[i].stage);
+        run_sleep(0.1 * (double)i);
+        kill(process.id, cases[i].signal);
+        assert_cancelled(&process, folder, 0);
+    }
+    run_folder_destroy(folder);
+}
+
 /* At any moment: either it is cancelled and nothing is there, or it was done already and the file is whole. */
 static void test_cancel_at_any_moment(void **state)
 {
@@ -260,15 +283,11 @@ static void test_watch_starts_broken(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cancel_in_each_stage),
-        cmocka_unit_test(test_cancel_at_any_moment),
-        cmocka_unit_test(test_cancel_an_endless_scene),
-        cmocka_unit_test(test_cancel_a_silent_pipe),
-        cmocka_unit_test(test_cancel_a_picture),
-        cmocka_unit_test(test_cancel_values_and_queries),
-        cmocka_unit_test(test_cancel_where_nothing_is_read),
-        cmocka_unit_test(test_cancel_an_atlas),
-        cmocka_unit_test(test_watch),
+        cmocka_unit_test(test_cancel_in_each_stage),      cmocka_unit_test(test_cancel_in_parts),
+        cmocka_unit_test(test_cancel_at_any_moment),      cmocka_unit_test(test_cancel_an_endless_scene),
+        cmocka_unit_test(test_cancel_a_silent_pipe),      cmocka_unit_test(test_cancel_a_picture),
+        cmocka_unit_test(test_cancel_values_and_queries), cmocka_unit_test(test_cancel_where_nothing_is_read),
+        cmocka_unit_test(test_cancel_an_atlas),           cmocka_unit_test(test_watch),
         cmocka_unit_test(test_watch_starts_broken),
     };
     return cmocka_run_group_tests_name("signals", tests, NULL, NULL);
