@@ -3,22 +3,14 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "geom/nearest.h"
-#include "simplify/samples.h"
+#include "simplify/probe_mark.h"
+#include "simplify/split.h"
 
 /* The cosine between triangles that meet in a ridge, and the square of one between what faces the same way. */
 static const double ridge_cosine = 0.92, least_along = 0.25;
 
 /* Samples that are placed at a time: what has most to lose first, and no more is looked at where that is too far. */
 enum { AT_ONCE = 24 };
-
-/* Points of the mesh as it would be: the new vertex, a triangle's middle, or that of its side towards the one before.
- */
-typedef enum mark_kind { MARK_VERTEX, MARK_RIDGE, MARK_MIDDLE } mark_kind;
-
-typedef struct probe_mark {
-    uint32_t face; /* of the fan */
-    mark_kind kind;
-} probe_mark;
 
 void hewn_simplify_probe_release(simplify_probe *probe)
 {
@@ -179,36 +171,6 @@ static bool faces_away(const simplify_samples *samples, uint32_t near, const dou
     return simplify_dot(normal, n) < 0;
 }
 
-/* A triangle of the input near a point of a triangle: one around the nearest of its samples. */
-static uint32_t guess_near(const simplify_work *work, uint32_t face, const double at[3])
-{
-    const simplify_samples *samples = work->samples;
-    uint32_t near = work->face_origins[face];
-    double least = INFINITY;
-    for (uint32_t s = samples->first[face]; s != HEWN_NONE; s = samples->items[s].next) {
-        double away[3];
-        simplify_between(at, samples->items[s].at, away);
-        const double square = simplify_dot(away, away);
-        near = square < least ? samples->faces[samples->rings[s]] : near;
-        least = square < least ? square : least;
-    }
-    return near;
-}
-
-bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face)
-{
-    const simplify_samples *samples = work->samples;
-    const uint32_t *corner = work->tail + 3 * (size_t)face;
-    const double *a = simplify_at(work, corner[0]), *b = simplify_at(work, corner[1]),
-                 *c = simplify_at(work, corner[2]);
-    double middle[3], n[3], distance;
-    for (int axis = 0; axis < 3; axis++)
-        middle[axis] = (a[axis] + b[axis] + c[axis]) / 3;
-    simplify_area_vector(a, b, c, n);
-    const uint32_t guess = guess_near(work, face, middle);
-    return faces_away(samples, hewn_bvh_nearest(&samples->bvh, &samples->input, middle, guess, &distance), n);
-}
-
 /* Whether the surface around a sample faces so much as a triangle does that all of it will. */
 static bool is_along(const simplify_sample *sample, const double normal[3])
 {
@@ -240,28 +202,6 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
             probe->turned |= faces_away(samples, look_back(samples, sample, place, true, probe), normal);
     }
     return HEWN_OK;
-}
-
-uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe)
-{
-    const simplify_samples *samples = work->samples;
-    uint32_t turned = 0;
-    for (size_t i = 0; i < probe->mark_count; i++) {
-        const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
-        const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
-        const uint32_t sample = probe->points[block->nearest[lane]].sample;
-        double place[3], normal[3], distance;
-        if (probe->marks[i].kind != MARK_MIDDLE)
-            continue;
-        simplify_fan_vector(block->at[0], lane, place);
-        for (int axis = 0; axis < 3; axis++)
-            place[axis] += probe->place[axis];
-        simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
-        const uint32_t near =
-            hewn_bvh_nearest(&samples->bvh, &samples->input, place, samples->faces[samples->rings[sample]], &distance);
-        turned += faces_away(samples, near, normal);
-    }
-    return turned;
 }
 
 static hewn_result place_all(const simplify_work *work, const double at[3], simplify_probe *probe)
@@ -322,6 +262,22 @@ hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simp
     begin(probe);
     HEWN_TRY(hewn_simplify_fan_add(&probe->fan, h / 3, to_a, to_d));
     HEWN_TRY(hewn_simplify_fan_add(&probe->fan, t / 3, to_d, to_b));
+    return place_all(work, at, probe);
+}
+
+hewn_result hewn_simplify_probe_split(const simplify_work *work, const simplify_split *split, simplify_probe *probe)
+{
+    const uint32_t h = split->half, t = work->twin[h];
+    const uint32_t corners[4] = {work->tail[h], work->tail[simplify_prev(t)], work->tail[t],
+                                 work->tail[simplify_prev(h)]}; /* a, d, b, c */
+    const uint32_t faces[4] = {t / 3, split->faces[1], split->faces[0], h / 3};
+    const double *at = work->samples->items[split->sample].at;
+    double towards[4][3];
+    begin(probe);
+    for (int k = 0; k < 4; k++)
+        simplify_between(at, simplify_at(work, corners[k]), towards[k]);
+    for (int k = 0; k < 4; k++)
+        HEWN_TRY(hewn_simplify_fan_add(&probe->fan, faces[k], towards[k], towards[(k + 1) % 4]));
     return place_all(work, at, probe);
 }
 

@@ -20,9 +20,6 @@ static uint32_t part_of(const simplify_work *work)
  * left to make. */
 static const float slim_factor = 100;
 
-/* And one that turns a triangle away from the input. */
-static const double turned_factor = 1000;
-
 /* Costs grow while edges go: the last ones to go cost about the square of how many times the triangles are to be less,
  * times what as many edges cost less than now. Limits of rounds are somewhat less than that; where more rounds with
  * samples follow, which edges go before others matters less than how many rounds there are. */
@@ -85,7 +82,7 @@ static float price_of(const simplify_work *work, uint32_t name, const simplify_p
 {
     const double far = fmax(probe->most, probe->back) / work->samples->aim;
     const double cost = fmax((double)work->key[name], work->samples->price * (far * far) * (far * far));
-    return (float)fmin(probe->turned ? turned_factor * cost : cost, FLT_MAX);
+    return (float)fmin(probe->turned ? work->samples->turned_factor * cost : cost, FLT_MAX);
 }
 
 /* The distance that has a price. */
@@ -115,7 +112,8 @@ static bool turns_away(edge_front *front, uint32_t name)
     work->flags[name] |= SIMPLIFY_STRICT;
     if (front->probe.turned > 0 || hewn_simplify_probe_turns(work, &front->probe) == 0)
         return false;
-    work->key[name] = (float)fmin(turned_factor * fmax((double)work->key[name], work->samples->price), FLT_MAX);
+    work->key[name] =
+        (float)fmin(work->samples->turned_factor * fmax((double)work->key[name], work->samples->price), FLT_MAX);
     return true;
 }
 

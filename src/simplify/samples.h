@@ -24,9 +24,10 @@ typedef struct simplify_samples {
     double *positions;       /* of the input's vertices, in coordinates of the work */
     hewn_bvh bvh;            /* of the input */
     hewn_triangle_view input;
-    double aim_factor; /* the distance that is aimed at, in means by cost */
-    bool strict;       /* collapses look in all of the input for what triangles turn away from */
-    double aim, price; /* a collapse that comes to `aim` costs at least `price` */
+    double aim_factor;    /* the distance that is aimed at, in means by cost */
+    double turned_factor; /* how much more a collapse costs that turns a triangle away from the input */
+    bool strict;          /* collapses and moves look in all of the input for what triangles turn away from */
+    double aim, price;    /* a collapse that comes to `aim` costs at least `price` */
 } simplify_samples;
 
 /* What the mesh would be around a collapse or a move, and where samples would be then. Zero is an empty one; its arrays
@@ -61,8 +62,8 @@ hewn_result hewn_simplify_samples_copy(const simplify_work *work, simplify_sampl
 void hewn_simplify_samples_drop(simplify_samples *copy);
 
 /* How good the mesh is, less being better: by the mean and the greatest distance between samples and mesh and between
- * points of the mesh and the input, and by how many triangles face away. */
-double hewn_simplify_score(const simplify_work *work);
+ * points of the mesh and the input, and by how many triangles face away. `work` is in order. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_score(const simplify_work *work, double *score);
 
 /* Triangles, in coordinates of the work, along the curve of hewn_simplify_order(), for hewn_bvh_build_along(). NULL:
  * out of memory. */
@@ -79,8 +80,13 @@ uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_pro
 /* `h` is a half-edge that may be swapped. */
 hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simplify_probe *probe);
 
-/* Whether a triangle faces away from the input's triangle that is nearest to its middle. */
+/* Whether a triangle faces away from the input's triangle that is nearest to its middle, or from one of those that are
+ * equally near. How: 2, or 1 where it is one of these only. */
 bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face);
+int hewn_simplify_how_turned(const simplify_work *work, uint32_t face);
+
+/* How many of the triangles around `v` do, but for those with `but`. */
+uint32_t hewn_simplify_count_turned(const simplify_work *work, uint32_t v, uint32_t but);
 
 /* Samples go to where the probe found them, just before or after the collapse or move is done. */
 void hewn_simplify_probe_settle(const simplify_work *work, const simplify_probe *probe);

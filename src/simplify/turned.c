@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "simplify/swap.h"
 
-enum { PASSES = 3 };
+enum { PASSES = 3, PLACES = 8 };
 
 static double find_most(const simplify_samples *samples)
 {
@@ -33,19 +33,6 @@ typedef struct mend_job {
 
 /* --- ways --------------------------------------------------------------------------------------------------------- */
 
-static uint32_t count_turned(const simplify_work *work, uint32_t v, uint32_t but)
-{
-    const uint32_t first = work->half[v];
-    uint32_t h = first, count = 0;
-    do {
-        const uint32_t in = simplify_prev(h);
-        if (simplify_head(work, h) != but && work->tail[in] != but)
-            count += hewn_simplify_is_turned(work, h / 3);
-        h = work->twin[in];
-    } while (h != HEWN_NONE && h != first);
-    return count;
-}
-
 /* Keeps what the probe has looked at, of `before` triangles that face away now, if it is better. */
 static void keep_better(mend_job *job, const mending *way, uint32_t before)
 {
@@ -72,7 +59,9 @@ static hewn_result try_collapse(mend_job *job, uint32_t name)
     if (isinf(plan->cost) || plan->far || simplify_is_tied(work, plan->gone) || !hewn_simplify_allowed(work, plan))
         return HEWN_OK;
     HEWN_TRY(hewn_simplify_probe_collapse(work, plan, &job->probe));
-    keep_better(job, &way, count_turned(work, plan->gone, HEWN_NONE) + count_turned(work, plan->kept, plan->gone));
+    keep_better(job, &way,
+                hewn_simplify_count_turned(work, plan->gone, HEWN_NONE) +
+                    hewn_simplify_count_turned(work, plan->kept, plan->gone));
     return HEWN_OK;
 }
 
@@ -102,7 +91,30 @@ static hewn_result try_move(mend_job *job, uint32_t v, const double step[3], dou
     return HEWN_OK;
 }
 
-/* A corner moves out of and into the surface, and to where it was in the input. */
+/* To samples of the triangles around, where the surface is: so many of each, spread. */
+static hewn_result try_places(mend_job *job, uint32_t v, uint32_t before)
+{
+    const simplify_work *work = job->work;
+    const simplify_samples *samples = work->samples;
+    const uint32_t first = work->half[v];
+    uint32_t h = first;
+    do {
+        uint32_t count = 0, at = 0;
+        for (uint32_t s = samples->first[h / 3]; s != HEWN_NONE; s = samples->items[s].next)
+            count++;
+        for (uint32_t s = samples->first[h / 3]; s != HEWN_NONE; s = samples->items[s].next, at++) {
+            double step[3];
+            if (at % (count / PLACES + 1) != 0)
+                continue;
+            simplify_between(simplify_at(work, v), samples->items[s].at, step);
+            HEWN_TRY(try_move(job, v, step, 1, before));
+        }
+        h = simplify_turn(work, h);
+    } while (h != HEWN_NONE && h != first);
+    return HEWN_OK;
+}
+
+/* A corner moves out of and into the surface, to where it was in the input, and to where samples are. */
 static hewn_result try_moves(mend_job *job, uint32_t face, uint32_t v)
 {
     static const double times[] = {0.25, -0.25, 0.5, -0.5, 1, -1, 2, -2};
@@ -111,7 +123,7 @@ static hewn_result try_moves(mend_job *job, uint32_t face, uint32_t v)
     double normal[3], step[3];
     if (work->rank[v] != SIMPLIFY_SMOOTH)
         return HEWN_OK;
-    const uint32_t before = count_turned(work, v, HEWN_NONE);
+    const uint32_t before = hewn_simplify_count_turned(work, v, HEWN_NONE);
     simplify_area_vector(simplify_at(work, corner[0]), simplify_at(work, corner[1]), simplify_at(work, corner[2]),
                          normal);
     const double length = sqrt(simplify_dot(normal, normal));
@@ -124,7 +136,8 @@ static hewn_result try_moves(mend_job *job, uint32_t face, uint32_t v)
         }
     simplify_between(simplify_at(work, v), work->samples->positions + 3 * (size_t)work->origins[v], step);
     HEWN_TRY(try_move(job, v, step, 0.5, before));
-    return try_move(job, v, step, 1, before);
+    HEWN_TRY(try_move(job, v, step, 1, before));
+    return try_places(job, v, before);
 }
 
 /* --- doing it ----------------------------------------------------------------------------------------------------- */
@@ -191,7 +204,16 @@ static hewn_result mend(mend_job *job, uint32_t face)
     return job->best.kind == MEND_NOT ? HEWN_OK : carry_out(job);
 }
 
-hewn_result hewn_simplify_right(simplify_work *work, hewn_error *error)
+/* Those that are left. */
+static uint32_t count_left(const simplify_work *work, const uint8_t *turned)
+{
+    uint32_t left = 0;
+    for (uint32_t f = 0; f < work->face_count; f++)
+        left += turned[f] && work->tail[3 * (size_t)f] != HEWN_NONE && hewn_simplify_is_turned(work, f);
+    return left;
+}
+
+hewn_result hewn_simplify_right(simplify_work *work, uint32_t *left, hewn_error *error)
 {
     mend_job job = {.work = work, .most = find_most(work->samples)};
     uint8_t *turned = job.turned = hewn_alloc(work->face_count, 1);
@@ -203,6 +225,7 @@ hewn_result hewn_simplify_right(simplify_work *work, hewn_error *error)
         for (uint32_t f = 0; f < work->face_count && result == HEWN_OK; f++)
             if (turned[f] && work->tail[3 * (size_t)f] != HEWN_NONE && hewn_simplify_is_turned(work, f))
                 result = mend(&job, f);
+    *left = result == HEWN_OK ? count_left(work, turned) : 0;
     hewn_free(turned);
     hewn_simplify_probe_release(&job.probe);
     return result == HEWN_OK ? hewn_simplify_order(work, 0, error)

@@ -134,6 +134,9 @@ void hewn_simplify_release(simplify_work *work);
  * released as well. */
 hewn_result hewn_simplify_copy(const simplify_work *work, simplify_work *out, hewn_error *error);
 
+/* Makes room for more, free as if removed. Not with attributes, not of a complex. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_grow(simplify_work *work, uint32_t vertices, uint32_t faces, hewn_error *error);
+
 /* Marks features and ranks vertices. */
 hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error);
 
