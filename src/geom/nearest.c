@@ -71,7 +71,8 @@ typedef struct near_search {
     const hewn_triangle_view *mesh;
     const double *at;
     uint32_t best;
-    double distance, square;
+    double distance, square; /* boxes are looked into that are nearer than the square's root */
+    double enough;
 } near_search;
 
 /* Squared distances to four boxes; of slots without one infinite. */
@@ -102,7 +103,7 @@ static void look_at(near_search *search, uint32_t triangle)
     if (distance < search->distance || (distance == search->distance && triangle < search->best)) {
         search->best = triangle;
         search->distance = distance;
-        search->square = distance * distance;
+        search->square = distance > search->enough ? distance * distance : 0;
     }
 }
 
@@ -126,13 +127,19 @@ static void descend(near_search *search, uint32_t level, uint64_t block)
     }
 }
 
-uint32_t hewn_bvh_nearest(const hewn_bvh *bvh, const hewn_triangle_view *mesh, const double at[3], uint32_t guess,
-                          double *distance)
+uint32_t hewn_bvh_nearest_within(const hewn_bvh *bvh, const hewn_triangle_view *mesh, const double at[3],
+                                 uint32_t guess, double enough, double *distance)
 {
-    near_search search = {.bvh = bvh, .mesh = mesh, .at = at, .best = guess};
+    near_search search = {.bvh = bvh, .mesh = mesh, .at = at, .best = guess, .enough = enough};
     search.distance = hewn_view_reach(mesh, guess, at);
-    search.square = search.distance * search.distance;
+    search.square = search.distance > enough ? search.distance * search.distance : 0;
     descend(&search, bvh->level_count - 1, 0);
     *distance = search.distance;
     return search.best;
+}
+
+uint32_t hewn_bvh_nearest(const hewn_bvh *bvh, const hewn_triangle_view *mesh, const double at[3], uint32_t guess,
+                          double *distance)
+{
+    return hewn_bvh_nearest_within(bvh, mesh, at, guess, 0, distance);
 }

@@ -414,6 +414,7 @@ static bool set_aim(simplify_work *work, uint32_t target)
 hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, bool early, hewn_error *error)
 {
     const uint32_t began = work->live_faces;
+    bool ordered = true; /* as by round 0, which sorting again does not change */
     float limit = 0;
     if (work->samples && target < began && !set_aim(work, target))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
@@ -422,19 +423,22 @@ hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, bool early, 
         HEWN_TRY(hewn_progress_report(work->desc->progress, "simplify",
                                       work->progress_begin + (work->progress_end - work->progress_begin) * done,
                                       error));
-        HEWN_TRY(hewn_simplify_order(work, round, error));
+        if (round > 0)
+            HEWN_TRY(hewn_simplify_order(work, round, error));
         if (work->vertex_count <= 2 * part_of(work) || (work->live_faces - target) < began / 50)
             break;
         uint32_t removed = 0, wanted = work->live_faces - target;
+        ordered = false;
         if (run_round(work, target, early, &limit, &removed) != HEWN_OK)
             return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
         if (removed < wanted / 10)
             break;
     }
     if (work->live_faces > target) {
-        HEWN_TRY(hewn_simplify_order(work, 0, error));
+        if (!ordered)
+            HEWN_TRY(hewn_simplify_order(work, 0, error));
         if (finish(work, target) != HEWN_OK)
             return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     }
-    return hewn_simplify_order(work, 0, error);
+    return work->live_faces < began ? hewn_simplify_order(work, 0, error) : HEWN_OK;
 }

@@ -43,8 +43,9 @@ typedef struct simplify_probe {
     double enough,
         plenty;  /* set before: distances below the one make no difference; past the other no more is looked at */
     bool cut;    /* something is past `plenty` */
+    bool defers; /* samples that make no difference are placed where they must be */
     double back; /* of the new vertex to the input */
-    double before, after; /* sums of squares of all distances, by weights */
+    double before, after; /* sums of squares of all distances, by weights; of moves and swaps */
     bool turned;          /* a triangle would face away from what is near its middle, among samples */
     double place[3];      /* that of the fan */
 } simplify_probe;
@@ -83,6 +84,6 @@ hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simp
 bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face);
 
 /* Samples go to where the probe found them, just before or after the collapse or move is done. */
-void hewn_simplify_probe_settle(const simplify_work *work, const simplify_probe *probe);
+void hewn_simplify_probe_settle(const simplify_work *work, simplify_probe *probe);
 
 #endif

@@ -47,8 +47,10 @@ static void test_fan(void **state)
             assert_int_equal(hewn_simplify_fan_add(&fan, 100 + i, p[i], q[i]), HEWN_OK);
         }
         assert_int_equal(hewn_simplify_fan_settle(&fan), HEWN_OK);
-        for (int i = 0; i < 9; i++)
+        for (int i = 0; i < 9; i++) {
             place(points[i].at, i < 6 ? 1.5 : 0.1);
+            points[i].near = SIMPLIFY_NOWHERE;
+        }
         hewn_simplify_fan_nearest(&fan, points, 9);
         for (int i = 0; i < 9; i++) {
             double least = INFINITY;
