@@ -212,11 +212,21 @@ static uint32_t look_back(const simplify_samples *samples, uint32_t sample, cons
 /* Whether a triangle of the input faces away from a normal. */
 static bool faces_away(const simplify_samples *samples, uint32_t near, const double normal[3])
 {
-    const uint32_t *corner = samples->input.corners + 3 * (size_t)near;
     double n[3];
-    simplify_area_vector(samples->positions + 3 * (size_t)corner[0], samples->positions + 3 * (size_t)corner[1],
-                         samples->positions + 3 * (size_t)corner[2], n);
+    hewn_triangle_normal(&samples->input, near, n);
     return simplify_dot(normal, n) < 0;
+}
+
+/* Whether the input's triangle nearest to a point does; `guess` is near it. Mostly all that are near face alike, and
+ * then it makes no difference which is the nearest. */
+static bool nearest_faces_away(const simplify_samples *samples, const double at[3], uint32_t guess,
+                               const double normal[3])
+{
+    const hewn_side side = hewn_bvh_nearest_side(&samples->bvh, &samples->facing, &samples->input, at, guess, normal);
+    double distance;
+    if (side != HEWN_SIDE_UNSURE)
+        return side == HEWN_SIDE_AWAY;
+    return faces_away(samples, hewn_bvh_nearest(&samples->bvh, &samples->input, at, guess, &distance), normal);
 }
 
 /* A triangle of the input near a point of a triangle: one around the nearest of its samples. */
@@ -241,12 +251,11 @@ bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face)
     const uint32_t *corner = work->tail + 3 * (size_t)face;
     const double *a = simplify_at(work, corner[0]), *b = simplify_at(work, corner[1]),
                  *c = simplify_at(work, corner[2]);
-    double middle[3], n[3], distance;
+    double middle[3], n[3];
     for (int axis = 0; axis < 3; axis++)
         middle[axis] = (a[axis] + b[axis] + c[axis]) / 3;
     simplify_area_vector(a, b, c, n);
-    const uint32_t guess = guess_near(work, face, middle);
-    return faces_away(samples, hewn_bvh_nearest(&samples->bvh, &samples->input, middle, guess, &distance), n);
+    return nearest_faces_away(samples, middle, guess_near(work, face, middle), n);
 }
 
 /* Whether the surface around a sample faces so much as a triangle does that all of it will. */
@@ -290,16 +299,14 @@ uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_pro
         const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
         const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
         const uint32_t sample = probe->points[block->nearest[lane]].sample;
-        double place[3], normal[3], distance;
+        double place[3], normal[3];
         if (probe->marks[i].kind != MARK_MIDDLE)
             continue;
         simplify_fan_vector(block->at[0], lane, place);
         for (int axis = 0; axis < 3; axis++)
             place[axis] += probe->place[axis];
         simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
-        const uint32_t near =
-            hewn_bvh_nearest(&samples->bvh, &samples->input, place, samples->faces[samples->rings[sample]], &distance);
-        turned += faces_away(samples, near, normal);
+        turned += nearest_faces_away(samples, place, samples->faces[samples->rings[sample]], normal);
     }
     return turned;
 }

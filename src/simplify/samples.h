@@ -5,6 +5,7 @@
 #define HEWN_SRC_SIMPLIFY_SAMPLES_H
 
 #include "geom/bvh.h"
+#include "geom/facing.h"
 #include "simplify/collapse.h"
 #include "simplify/fan.h"
 
@@ -23,6 +24,7 @@ typedef struct simplify_samples {
     uint32_t *rings, *faces; /* the input's triangles around each sample: where they begin, with one more at the end */
     double *positions;       /* of the input's vertices, in coordinates of the work */
     hewn_bvh bvh;            /* of the input */
+    hewn_facing facing;
     hewn_triangle_view input;
     double aim_factor; /* the distance that is aimed at, in means by cost */
     bool strict;       /* collapses look in all of the input for what triangles turn away from */
