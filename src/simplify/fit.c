@@ -198,7 +198,7 @@ static hewn_result sweep(const fitting *job, bool last)
     int failed = 0;
 #pragma omp parallel reduction(| : failed)
     {
-        simplify_probe probe = {0};
+        simplify_probe probe = {.sums = true};
 #pragma omp for schedule(dynamic)
         for (uint32_t p = 0; p < job->parts; p++) {
             failed |= fit_edges(job, faces[p], faces[p + 1], true, &probe) != HEWN_OK;
@@ -206,7 +206,7 @@ static hewn_result sweep(const fitting *job, bool last)
         }
         hewn_simplify_probe_release(&probe);
     }
-    simplify_probe probe = {0};
+    simplify_probe probe = {.sums = true};
     failed |= last && fit_edges(job, 0, job->work->face_count, false, &probe) != HEWN_OK;
     failed |= fit_vertices(job, 0, job->work->vertex_count, false, &probe) != HEWN_OK;
     hewn_simplify_probe_release(&probe);

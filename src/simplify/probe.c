@@ -78,7 +78,7 @@ static hewn_result take_samples(const simplify_samples *samples, uint32_t face, 
         point->sample = s;
         point->near = SIMPLIFY_NOWHERE;
         simplify_between(at, samples->items[s].at, point->at);
-        if (probe->defers && own != SIMPLIFY_NOWHERE && hewn_simplify_fan_is_within(&probe->fan, own, point->at, most))
+        if (!probe->sums && own != SIMPLIFY_NOWHERE && hewn_simplify_fan_is_within(&probe->fan, own, point->at, most))
             point->near = deferred;
     }
     return HEWN_OK;
@@ -291,11 +291,11 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
     return HEWN_OK;
 }
 
-uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe)
+uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe, uint32_t most)
 {
     const simplify_samples *samples = work->samples;
     uint32_t turned = 0;
-    for (size_t i = 0; i < probe->mark_count; i++) {
+    for (size_t i = 0; i < probe->mark_count && turned <= most; i++) {
         const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
         const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
         const uint32_t sample = probe->points[block->nearest[lane]].sample;
@@ -340,13 +340,12 @@ static void begin(simplify_probe *probe)
     probe->point_count = probe->mark_count = 0;
     probe->cleared[0] = probe->cleared[1] = HEWN_NONE;
     probe->back = probe->most = probe->before = probe->after = 0;
-    probe->turned = probe->cut = probe->defers = false;
+    probe->turned = probe->cut = false;
 }
 
 hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simplify_plan *plan, simplify_probe *probe)
 {
     begin(probe);
-    probe->defers = true;
     HEWN_TRY(take_fan(work, plan->gone, plan->kept, plan->at, probe));
     HEWN_TRY(take_fan(work, plan->kept, plan->gone, plan->at, probe));
     return place_all(work, plan->at, probe);

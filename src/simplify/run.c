@@ -113,7 +113,7 @@ static bool turns_away(edge_front *front, uint32_t name)
     if (!work->samples->strict || work->flags[name] & SIMPLIFY_STRICT)
         return false;
     work->flags[name] |= SIMPLIFY_STRICT;
-    if (front->probe.turned > 0 || hewn_simplify_probe_turns(work, &front->probe) == 0)
+    if (front->probe.turned > 0 || hewn_simplify_probe_turns(work, &front->probe, 0) == 0)
         return false;
     work->key[name] = (float)fmin(turned_factor * fmax((double)work->key[name], work->samples->price), FLT_MAX);
     return true;

@@ -45,9 +45,9 @@ typedef struct simplify_probe {
     double enough,
         plenty;  /* set before: distances below the one make no difference; past the other no more is looked at */
     bool cut;    /* something is past `plenty` */
-    bool defers; /* samples that make no difference are placed where they must be */
+    bool sums;   /* set before: `before` and `after` are wanted; else samples that make no difference are placed late */
     double back; /* of the new vertex to the input */
-    double before, after; /* sums of squares of all distances, by weights; of moves and swaps */
+    double before, after; /* sums of squares of all distances, by weights, if they are wanted */
     bool turned;          /* a triangle would face away from what is near its middle, among samples */
     double place[3];      /* that of the fan */
 } simplify_probe;
@@ -76,8 +76,9 @@ hewn_result hewn_simplify_probe_collapse(const simplify_work *work, const simpli
 hewn_result hewn_simplify_probe_move(const simplify_work *work, uint32_t v, const double to[3], simplify_probe *probe);
 
 /* After one of these, if it was not cut: how many triangles would face away from what is nearest to their middles in
- * all of the input, not just around the nearest sample. 0 where there are no samples. */
-uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe);
+ * all of the input, not just around the nearest sample; no more are looked for than one past `most`. 0 where there are
+ * no samples. */
+uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe, uint32_t most);
 
 /* `h` is a half-edge that may be swapped. */
 hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simplify_probe *probe);

@@ -53,11 +53,14 @@ static void keep_better(mend_job *job, const mending *way, uint32_t before)
     const double far = fmax(probe->most, probe->back);
     if (before == 0 || probe->cut || !(far <= job->most) || (before == job->best.fewer && far >= job->best.far))
         return;
-    const uint32_t after = hewn_simplify_probe_turns(job->work, probe);
-    if (after >= before)
+    const uint32_t least = job->best.fewer > 0 ? job->best.fewer : 1;
+    if (before < least)
+        return;
+    const uint32_t after = hewn_simplify_probe_turns(job->work, probe, before - least);
+    if (after > before - least)
         return;
     const uint32_t fewer = before - after;
-    if (fewer < job->best.fewer || (fewer == job->best.fewer && far >= job->best.far))
+    if (fewer == job->best.fewer && far >= job->best.far)
         return;
     job->best = *way;
     job->best.fewer = fewer;
