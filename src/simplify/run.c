@@ -101,8 +101,8 @@ static bool grows_dear(edge_front *front, uint32_t name)
     const float cost = price_of(work, name, &front->probe), before = work->key[name];
     work->flags[name] |= front->probe.cut ? 0 : SIMPLIFY_PROBED;
     work->key[name] = fmaxf(before, cost);
-    return cost > before &&
-           (cost > front->limit || (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0]));
+    return cost > before && (cost > front->limit || (!simplify_queue_is_empty(&front->queue) &&
+                                                     simplify_item(cost, name) > simplify_queue_head(&front->queue)));
 }
 
 /* An edge that is about to collapse: whether that turns a triangle away from what is nearest in all of the input, which
@@ -130,7 +130,8 @@ static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool
     if (!work->samples)
         return HEWN_OK;
     const bool priced = tied || work->flags[name] & SIMPLIFY_PROBED;
-    const float next = front->queue.count > 0 ? simplify_item_cost(front->queue.items[0]) : FLT_MAX;
+    const float next =
+        simplify_queue_is_empty(&front->queue) ? FLT_MAX : simplify_item_cost(simplify_queue_head(&front->queue));
     front->probe.enough = reach_of(work, work->key[name]);
     front->probe.plenty = priced ? INFINITY : 1.01 * reach_of(work, fminf(next, front->limit));
     const uint32_t count = hewn_simplify_sides(work, plan, sides);
@@ -162,9 +163,8 @@ static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool
 static hewn_result step(edge_front *front)
 {
     simplify_work *work = front->work;
-    const uint64_t item = front->queue.items[0];
+    const uint64_t item = simplify_queue_take(&front->queue);
     const uint32_t name = (uint32_t)item;
-    simplify_queue_pop(&front->queue);
     if (!is_current(work, item))
         return HEWN_OK;
     simplify_plan plan = hewn_simplify_plan(work, name);
@@ -175,7 +175,7 @@ static hewn_result step(edge_front *front)
         work->flags[name] = (uint8_t)((work->flags[name] & ~SIMPLIFY_RAISED) | SIMPLIFY_FRESH);
         if (cost > front->limit || isinf(cost))
             return HEWN_OK;
-        if (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0])
+        if (!simplify_queue_is_empty(&front->queue) && simplify_item(cost, name) > simplify_queue_head(&front->queue))
             return enqueue(front, name);
     }
     if (plan.far || !hewn_simplify_allowed(work, &plan))
@@ -204,7 +204,7 @@ static hewn_result step(edge_front *front)
 static hewn_result drain(edge_front *front)
 {
     simplify_queue_settle(&front->queue);
-    while (front->queue.count > 0 && front->removed < front->budget)
+    while (!simplify_queue_is_empty(&front->queue) && front->removed < front->budget)
         HEWN_TRY(step(front));
     return HEWN_OK;
 }
@@ -293,6 +293,7 @@ static hewn_result run_part(const part_list *parts, uint32_t p, edge_front *fron
     hewn_result result = hewn_reserve((void **)&front->queue.items, &front->queue.capacity, parts->edges[p] + 1,
                                       sizeof *front->queue.items, NULL);
     front->queue.count = 0;
+    front->queue.hollow = false;
     front->removed = 0;
     if (result != HEWN_OK)
         return result;
