@@ -27,6 +27,9 @@ typedef struct mend_job {
     simplify_work *work;
     double most;     /* nothing comes further away */
     uint8_t *turned; /* one a triangle: it may face away */
+    uint32_t clock;  /* how often something was done */
+    uint32_t *tried; /* one a triangle: the clock when nothing helped, and 1; 0: it was not tried or something did */
+    uint32_t *done;  /* one a vertex: the clock when something was last done to triangles there */
     simplify_probe probe;
     mending best;
 } mend_job;
@@ -150,9 +153,32 @@ static hewn_result carry_out(mend_job *job)
         work->live_vertices--;
     }
     hewn_simplify_probe_settle(work, &job->probe);
-    for (uint32_t f = 0; f < job->probe.fan.count; f++)
-        job->turned[job->probe.fan.blocks[f / SIMPLIFY_FOUR].face[f % SIMPLIFY_FOUR]] = 1;
+    job->clock++;
+    for (uint32_t f = 0; f < job->probe.fan.count; f++) {
+        const uint32_t face = job->probe.fan.blocks[f / SIMPLIFY_FOUR].face[f % SIMPLIFY_FOUR];
+        job->turned[face] = 1;
+        for (size_t k = 0; k < 3; k++)
+            job->done[work->tail[3 * (size_t)face + k]] = job->clock;
+    }
     return HEWN_OK;
+}
+
+/* Whether nothing has been done at any neighbour of a triangle's corners since nothing helped there: then nothing will,
+ * for no more than the triangles around these is looked at. */
+static bool is_hopeless(const mend_job *job, uint32_t face)
+{
+    const simplify_work *work = job->work;
+    for (uint32_t k = 0; k < 3 && job->tried[face] > 0; k++) {
+        const uint32_t first = work->half[work->tail[3 * face + k]];
+        uint32_t h = first;
+        do {
+            const uint32_t in = simplify_prev(h);
+            if (job->done[simplify_head(work, h)] >= job->tried[face] || job->done[work->tail[in]] >= job->tried[face])
+                return false;
+            h = work->twin[in];
+        } while (h != HEWN_NONE && h != first);
+    }
+    return job->tried[face] > 0;
 }
 
 /* Edges at a corner. */
@@ -179,6 +205,8 @@ static hewn_result mend(mend_job *job, uint32_t face)
     for (uint32_t k = 0; k < 3; k++)
         if (work->rank[corner[k]] == SIMPLIFY_APART)
             return HEWN_OK;
+    if (is_hopeless(job, face))
+        return HEWN_OK;
     job->best = (mending){.kind = MEND_NOT};
     job->probe.enough = 0;
     job->probe.plenty = job->most;
@@ -191,6 +219,7 @@ static hewn_result mend(mend_job *job, uint32_t face)
         HEWN_TRY(try_moves(job, face, corner[k]));
     for (uint32_t k = 0; k < 3 && job->best.kind == MEND_NOT; k++)
         HEWN_TRY(try_edges(job, corner[k]));
+    job->tried[face] = job->best.kind == MEND_NOT ? job->clock + 1 : 0;
     return job->best.kind == MEND_NOT ? HEWN_OK : carry_out(job);
 }
 
@@ -198,7 +227,9 @@ hewn_result hewn_simplify_right(simplify_work *work, hewn_error *error)
 {
     mend_job job = {.work = work, .most = find_most(work->samples)};
     uint8_t *turned = job.turned = hewn_alloc(work->face_count, 1);
-    hewn_result result = turned ? HEWN_OK : HEWN_OUT_OF_MEMORY;
+    job.tried = hewn_alloc_zero(work->face_count, sizeof *job.tried);
+    job.done = hewn_alloc_zero(work->vertex_count, sizeof *job.done);
+    hewn_result result = turned && job.tried && job.done ? HEWN_OK : HEWN_OUT_OF_MEMORY;
 #pragma omp parallel for schedule(dynamic, 64) if (work->vertex_count > SIMPLIFY_FEW / 8)
     for (uint32_t f = 0; f < (turned ? work->face_count : 0); f++)
         turned[f] = hewn_simplify_is_turned(work, f);
@@ -207,6 +238,8 @@ hewn_result hewn_simplify_right(simplify_work *work, hewn_error *error)
             if (turned[f] && work->tail[3 * (size_t)f] != HEWN_NONE && hewn_simplify_is_turned(work, f))
                 result = mend(&job, f);
     hewn_free(turned);
+    hewn_free(job.tried);
+    hewn_free(job.done);
     hewn_simplify_probe_release(&job.probe);
     return result == HEWN_OK ? hewn_simplify_order(work, 0, error)
                              : hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
