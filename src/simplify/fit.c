@@ -60,6 +60,14 @@ static void pull(const fitting *job, uint32_t h, simplify_quadric *q, double to[
     }
 }
 
+/* What a move or swap must come to: less of the sum of squares, nothing that is far away and was not, none turned. */
+static void expect(const fitting *job, double gain, simplify_probe *probe)
+{
+    probe->enough = probe->plenty = far_share * job->most;
+    probe->refuses = probe->sums = true;
+    probe->gain = gain;
+}
+
 static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *probe)
 {
     simplify_work *work = job->work;
@@ -82,10 +90,9 @@ static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *pr
             to[axis] = simplify_at(work, v)[axis] + move[axis] / (attempt + 1);
         if (!hewn_simplify_may_move(work, v, to))
             continue;
-        probe->enough = far_share * job->most;
-        probe->plenty = INFINITY;
+        expect(job, 1, probe);
         HEWN_TRY(hewn_simplify_probe_move(work, v, to, probe));
-        if (probe->turned || probe->after >= probe->before || fmax(probe->most, probe->back) > far_share * job->most)
+        if (probe->cut)
             continue;
         memcpy(work->positions + 3 * (size_t)v, to, sizeof to);
         hewn_simplify_probe_settle(work, probe);
@@ -100,11 +107,9 @@ static hewn_result fit_edge(const fitting *job, uint32_t h, simplify_probe *prob
     simplify_work *work = job->work;
     if (!hewn_simplify_may_swap(work, h))
         return HEWN_OK;
-    probe->enough = far_share * job->most;
-    probe->plenty = INFINITY;
+    expect(job, swap_gain, probe);
     HEWN_TRY(hewn_simplify_probe_swap(work, h, probe));
-    if (probe->turned || probe->after >= swap_gain * probe->before ||
-        fmax(probe->most, probe->back) > far_share * job->most)
+    if (probe->cut)
         return HEWN_OK;
     hewn_simplify_swap(work, h);
     hewn_simplify_probe_settle(work, probe);
@@ -198,7 +203,7 @@ static hewn_result sweep(const fitting *job, bool last)
     int failed = 0;
 #pragma omp parallel reduction(| : failed)
     {
-        simplify_probe probe = {.sums = true};
+        simplify_probe probe = {0};
 #pragma omp for schedule(dynamic)
         for (uint32_t p = 0; p < job->parts; p++) {
             failed |= fit_edges(job, faces[p], faces[p + 1], true, &probe) != HEWN_OK;
@@ -206,7 +211,7 @@ static hewn_result sweep(const fitting *job, bool last)
         }
         hewn_simplify_probe_release(&probe);
     }
-    simplify_probe probe = {.sums = true};
+    simplify_probe probe = {0};
     failed |= last && fit_edges(job, 0, job->work->face_count, false, &probe) != HEWN_OK;
     failed |= fit_vertices(job, 0, job->work->vertex_count, false, &probe) != HEWN_OK;
     hewn_simplify_probe_release(&probe);

@@ -272,7 +272,7 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
     memcpy(probe->place, at, sizeof probe->place);
     hewn_simplify_find_marks(probe->points, probe->point_count, probe->blocks,
                              (probe->mark_count + SIMPLIFY_FOUR - 1) / SIMPLIFY_FOUR);
-    for (size_t i = 0; i < probe->mark_count; i++) {
+    for (size_t i = 0; i < probe->mark_count && !probe->cut; i++) {
         const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
         const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
         const uint32_t sample = probe->points[block->nearest[lane]].sample;
@@ -282,11 +282,12 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
             place[axis] += at[axis];
         if (probe->marks[i].kind != MARK_MIDDLE) {
             reach_back(samples, sample, block->square[lane], place, probe);
-            continue;
+        } else {
+            simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
+            if (!is_along(&samples->items[sample], normal))
+                probe->turned |= faces_away(samples, look_back(samples, sample, place, probe), normal);
         }
-        simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
-        if (!is_along(&samples->items[sample], normal))
-            probe->turned |= faces_away(samples, look_back(samples, sample, place, probe), normal);
+        probe->cut = (probe->refuses && probe->back > probe->plenty) || (probe->sums && probe->turned);
     }
     return HEWN_OK;
 }
@@ -314,6 +315,7 @@ uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_pro
 static hewn_result place_all(const simplify_work *work, const double at[3], simplify_probe *probe)
 {
     const simplify_samples *samples = work->samples;
+    probe->cut = probe->fan.count == 0 && probe->sums;
     if (probe->fan.count == 0)
         return HEWN_OK;
     HEWN_TRY(hewn_simplify_fan_settle(&probe->fan));
@@ -329,6 +331,7 @@ static hewn_result place_all(const simplify_work *work, const double at[3], simp
         place_samples(samples, placed, probe);
         placed = probe->point_count;
     }
+    probe->cut |= probe->sums && !(probe->after < probe->gain * probe->before);
     if (probe->point_count == 0 || probe->cut)
         return HEWN_OK;
     return look_at_marks(samples, at, probe);

@@ -43,9 +43,11 @@ typedef struct simplify_probe {
     uint32_t cleared[2]; /* triangles that would go; HEWN_NONE */
     double most;         /* the greatest distance that grew */
     double enough,
-        plenty;  /* set before: distances below the one make no difference; past the other no more is looked at */
-    bool cut;    /* something is past `plenty` */
+        plenty;   /* set before: distances below the one make no difference; past the other no more is looked at */
+    bool refuses; /* set before: nothing past `plenty` will do, from the mesh to the input either */
+    bool cut;     /* something is past `plenty`, or will not do: what else there is was not looked at */
     bool sums;   /* set before: `before` and `after` are wanted; else samples that make no difference are placed late */
+    double gain; /* set before, with sums: will not do unless after < gain × before and nothing is turned */
     double back; /* of the new vertex to the input */
     double before, after; /* sums of squares of all distances, by weights, if they are wanted */
     bool turned;          /* a triangle would face away from what is near its middle, among samples */

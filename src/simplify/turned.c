@@ -140,6 +140,7 @@ static hewn_result carry_out(mend_job *job)
     simplify_work *work = job->work;
     const mending *way = &job->best;
     job->probe.plenty = INFINITY;
+    job->probe.refuses = false;
     if (way->kind == MEND_SWAP) {
         HEWN_TRY(hewn_simplify_probe_swap(work, way->at, &job->probe));
         hewn_simplify_swap(work, way->at);
@@ -210,6 +211,7 @@ static hewn_result mend(mend_job *job, uint32_t face)
     job->best = (mending){.kind = MEND_NOT};
     job->probe.enough = 0;
     job->probe.plenty = job->most;
+    job->probe.refuses = true;
     for (uint32_t k = 0; k < 3; k++) {
         HEWN_TRY(try_collapse(job, simplify_name(work, 3 * face + k)));
         if (work->twin[3 * face + k] != HEWN_NONE)
