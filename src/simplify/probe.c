@@ -245,6 +245,29 @@ static uint32_t guess_near(const simplify_work *work, uint32_t face, const doubl
     return near;
 }
 
+uint32_t hewn_simplify_nearest(const simplify_work *work, uint32_t face)
+{
+    const simplify_samples *samples = work->samples;
+    const uint32_t *corner = work->tail + 3 * (size_t)face;
+    double middle[3], distance;
+    for (int axis = 0; axis < 3; axis++)
+        middle[axis] = (simplify_at(work, corner[0])[axis] + simplify_at(work, corner[1])[axis] +
+                        simplify_at(work, corner[2])[axis]) /
+                       3;
+    return hewn_bvh_nearest(&samples->bvh, &samples->input, middle, guess_near(work, face, middle), &distance);
+}
+
+hewn_side hewn_simplify_side(const simplify_work *work, const double a[3], const double b[3], const double c[3],
+                             uint32_t guess)
+{
+    const simplify_samples *samples = work->samples;
+    double middle[3], n[3];
+    for (int axis = 0; axis < 3; axis++)
+        middle[axis] = (a[axis] + b[axis] + c[axis]) / 3;
+    simplify_area_vector(a, b, c, n);
+    return hewn_bvh_nearest_side(&samples->bvh, &samples->facing, &samples->input, middle, guess, n);
+}
+
 bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face)
 {
     const simplify_samples *samples = work->samples;

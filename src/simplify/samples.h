@@ -88,6 +88,14 @@ hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simp
 /* Whether a triangle faces away from the input's triangle that is nearest to its middle. */
 bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face);
 
+/* The input's triangle nearest to a triangle's middle. */
+uint32_t hewn_simplify_nearest(const simplify_work *work, uint32_t face);
+
+/* Which side of a triangle is towards the input's triangle nearest to its middle, as far as is told soon; `guess` is
+ * one near it. */
+hewn_side hewn_simplify_side(const simplify_work *work, const double a[3], const double b[3], const double c[3],
+                             uint32_t guess);
+
 /* Samples go to where the probe found them, just before or after the collapse or move is done. */
 void hewn_simplify_probe_settle(const simplify_work *work, simplify_probe *probe);
 

@@ -31,6 +31,8 @@ typedef struct mend_job {
     uint32_t *tried; /* one a triangle: the clock when nothing helped, and 1; 0: it was not tried or something did */
     uint32_t *done;  /* one a vertex: the clock when something was last done to triangles there */
     simplify_probe probe;
+    uint32_t face; /* the triangle that is to face away no more */
+    uint32_t near; /* the input's triangle nearest to its middle */
     mending best;
 } mend_job;
 
@@ -49,6 +51,12 @@ static uint32_t count_turned(const simplify_work *work, uint32_t v, uint32_t but
     return count;
 }
 
+/* How many triangles must face away no more for something to be better than what there is. */
+static uint32_t least_fewer(const mend_job *job)
+{
+    return job->best.fewer > 0 ? job->best.fewer : 1;
+}
+
 /* Keeps what the probe has looked at, of `before` triangles that face away now, if it is better. */
 static void keep_better(mend_job *job, const mending *way, uint32_t before)
 {
@@ -56,7 +64,7 @@ static void keep_better(mend_job *job, const mending *way, uint32_t before)
     const double far = fmax(probe->most, probe->back);
     if (before == 0 || probe->cut || !(far <= job->most) || (before == job->best.fewer && far >= job->best.far))
         return;
-    const uint32_t least = job->best.fewer > 0 ? job->best.fewer : 1;
+    const uint32_t least = least_fewer(job);
     if (before < least)
         return;
     const uint32_t after = hewn_simplify_probe_turns(job->work, probe, before - least);
@@ -94,6 +102,17 @@ static hewn_result try_swap(mend_job *job, uint32_t h)
     return HEWN_OK;
 }
 
+/* Whether the triangle surely faces away still with its corner `v` elsewhere. */
+static bool stays_turned(const mend_job *job, uint32_t v, const double to[3])
+{
+    const simplify_work *work = job->work;
+    const uint32_t *corner = work->tail + 3 * (size_t)job->face;
+    const double *at[3];
+    for (int k = 0; k < 3; k++)
+        at[k] = corner[k] == v ? to : simplify_at(work, corner[k]);
+    return hewn_simplify_side(work, at[0], at[1], at[2], job->near) == HEWN_SIDE_AWAY;
+}
+
 /* By so many times `step`. */
 static hewn_result try_move(mend_job *job, uint32_t v, const double step[3], double times, uint32_t before)
 {
@@ -102,6 +121,8 @@ static hewn_result try_move(mend_job *job, uint32_t v, const double step[3], dou
     for (int axis = 0; axis < 3; axis++)
         way.plan.at[axis] = simplify_at(work, v)[axis] + times * step[axis];
     if (!hewn_simplify_may_move(work, v, way.plan.at))
+        return HEWN_OK;
+    if (before <= least_fewer(job) && stays_turned(job, v, way.plan.at))
         return HEWN_OK;
     HEWN_TRY(hewn_simplify_probe_move(work, v, way.plan.at, &job->probe));
     keep_better(job, &way, before);
@@ -209,6 +230,8 @@ static hewn_result mend(mend_job *job, uint32_t face)
     if (is_hopeless(job, face))
         return HEWN_OK;
     job->best = (mending){.kind = MEND_NOT};
+    job->face = face;
+    job->near = hewn_simplify_nearest(work, face);
     job->probe.enough = 0;
     job->probe.plenty = job->most;
     job->probe.refuses = true;
