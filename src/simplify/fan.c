@@ -236,7 +236,7 @@ HEWN_CLONES
 void hewn_simplify_fan_nearest(const simplify_fan *fan, simplify_fan_point *points, size_t count)
 {
     for (size_t i = 0; i < count;) {
-        simplify_fan_point *some[SIMPLIFY_FOUR];
+        simplify_fan_point *some[SIMPLIFY_FOUR] = {points, points, points, points};
         uint32_t taken = 0;
         for (; i < count && taken < SIMPLIFY_FOUR; i++)
             if (points[i].near == SIMPLIFY_NOWHERE)
