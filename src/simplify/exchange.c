@@ -141,7 +141,8 @@ static hewn_result judge_split(exchange_job *job, uint32_t name)
     const uint32_t before = (uint32_t)job->turned[name / 3] + job->turned[work->twin[name] / 3];
     double gain = -change_of(job);
     if (before > 0)
-        gain += turned_share * job->all * ((double)before - (double)hewn_simplify_probe_turns(work, &job->probe));
+        gain += turned_share * job->all *
+                ((double)before - (double)hewn_simplify_probe_turns(work, &job->probe, UINT32_MAX));
     job->gain[name] = (float)fmax(gain, 0);
     return HEWN_OK;
 }
@@ -275,7 +276,7 @@ static hewn_result split(exchange_job *job, uint32_t name, bool *done)
     simplify_split what;
     const uint32_t t = work->twin[name], before = (uint32_t)job->turned[name / 3] + job->turned[t / 3];
     HEWN_TRY(probe_split(job, name, &what, done));
-    *done = *done && hewn_simplify_probe_turns(work, &job->probe) <= before;
+    *done = *done && hewn_simplify_probe_turns(work, &job->probe, before) <= before;
     if (!*done) {
         job->gain[name] = 0;
         return HEWN_OK;
@@ -297,7 +298,7 @@ static hewn_result collapse(exchange_job *job, uint32_t name, bool *done)
     simplify_work *work = job->work;
     simplify_plan plan;
     HEWN_TRY(probe_collapse(job, name, &plan, done));
-    *done = *done && hewn_simplify_probe_turns(work, &job->probe) == 0;
+    *done = *done && hewn_simplify_probe_turns(work, &job->probe, 0) == 0;
     if (!*done) {
         job->loss[name] = INFINITY;
         return HEWN_OK;
@@ -346,7 +347,7 @@ static hewn_result exchange_round(exchange_job *job, uint32_t target, uint32_t m
 static hewn_result run_round(simplify_work *work, uint32_t target, bool last, uint32_t *count, hewn_error *error)
 {
     const uint32_t faces = work->face_count, most = faces / SHARE + 1;
-    exchange_job job = {.work = work, .vertex = work->vertex_count, .face = faces};
+    exchange_job job = {.work = work, .probe = {.sums = true}, .vertex = work->vertex_count, .face = faces};
     HEWN_TRY(hewn_simplify_grow(work, most, 2 * most, error));
     job.loss = hewn_alloc(faces, 3 * sizeof *job.loss);
     job.gain = hewn_alloc(faces, 3 * sizeof *job.gain);

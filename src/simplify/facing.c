@@ -1,9 +1,6 @@
 #include "geom/nearest.h"
 #include "simplify/probe_mark.h"
 
-/* Triangles are as near as the nearest one up to this share of the distance. */
-static const double as_near = 1e-6;
-
 static void normal_of(const simplify_samples *samples, uint32_t face, double out[3])
 {
     const uint32_t *corner = samples->input.corners + 3 * (size_t)face;
@@ -18,13 +15,13 @@ static bool is_within(const simplify_samples *samples, uint32_t face, const doub
     double away[3];
     simplify_between(samples->positions + 3 * (size_t)samples->input.corners[3 * (size_t)face], at, away);
     const double height = simplify_dot(away, n);
-    return height * height >= (1 - as_near) * (1 - as_near) * distance * distance * simplify_dot(n, n);
+    return height * height >= (1 - HEWN_AS_NEAR) * (1 - HEWN_AS_NEAR) * distance * distance * simplify_dot(n, n);
 }
 
 /* Whether any triangle that is as near faces away. */
 static bool any_faces_away(const simplify_samples *samples, const double at[3], const double normal[3], double distance)
 {
-    const double reach = (1 + as_near) * distance;
+    const double reach = (1 + HEWN_AS_NEAR) * distance;
     float lo[3], hi[3];
     uint64_t block;
     for (int axis = 0; axis < 3; axis++) {
@@ -47,7 +44,10 @@ static bool any_faces_away(const simplify_samples *samples, const double at[3], 
  * are as near, at an edge or a corner, and another one does than was found first. */
 static int faces_away(const simplify_samples *samples, const double at[3], const double normal[3], uint32_t guess)
 {
+    const hewn_side side = hewn_bvh_nearest_side(&samples->bvh, &samples->facing, &samples->input, at, guess, normal);
     double distance, n[3];
+    if (side != HEWN_SIDE_UNSURE) /* mostly all that are near face alike */
+        return side == HEWN_SIDE_AWAY ? 2 : 0;
     const uint32_t near = hewn_bvh_nearest(&samples->bvh, &samples->input, at, guess, &distance);
     normal_of(samples, near, n);
     if (simplify_dot(normal, n) < 0)
@@ -71,6 +71,31 @@ static uint32_t guess_near(const simplify_work *work, uint32_t face, const doubl
     return near;
 }
 
+static void middle_of(const double a[3], const double b[3], const double c[3], double out[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        out[axis] = (a[axis] + b[axis] + c[axis]) / 3;
+}
+
+uint32_t hewn_simplify_nearest(const simplify_work *work, uint32_t face)
+{
+    const simplify_samples *samples = work->samples;
+    const uint32_t *corner = work->tail + 3 * (size_t)face;
+    double middle[3], distance;
+    middle_of(simplify_at(work, corner[0]), simplify_at(work, corner[1]), simplify_at(work, corner[2]), middle);
+    return hewn_bvh_nearest(&samples->bvh, &samples->input, middle, guess_near(work, face, middle), &distance);
+}
+
+hewn_side hewn_simplify_side(const simplify_work *work, const double a[3], const double b[3], const double c[3],
+                             uint32_t guess)
+{
+    const simplify_samples *samples = work->samples;
+    double middle[3], n[3];
+    middle_of(a, b, c, middle);
+    simplify_area_vector(a, b, c, n);
+    return hewn_bvh_nearest_side(&samples->bvh, &samples->facing, &samples->input, middle, guess, n);
+}
+
 int hewn_simplify_how_turned(const simplify_work *work, uint32_t face)
 {
     const simplify_samples *samples = work->samples;
@@ -78,8 +103,7 @@ int hewn_simplify_how_turned(const simplify_work *work, uint32_t face)
     const double *a = simplify_at(work, corner[0]), *b = simplify_at(work, corner[1]),
                  *c = simplify_at(work, corner[2]);
     double middle[3], n[3];
-    for (int axis = 0; axis < 3; axis++)
-        middle[axis] = (a[axis] + b[axis] + c[axis]) / 3;
+    middle_of(a, b, c, middle);
     simplify_area_vector(a, b, c, n);
     return faces_away(samples, middle, n, guess_near(work, face, middle));
 }
@@ -102,11 +126,11 @@ uint32_t hewn_simplify_count_turned(const simplify_work *work, uint32_t v, uint3
     return count;
 }
 
-uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe)
+uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe, uint32_t most)
 {
     const simplify_samples *samples = work->samples;
     uint32_t turned = 0;
-    for (size_t i = 0; i < probe->mark_count; i++) {
+    for (size_t i = 0; i < probe->mark_count && turned <= most; i++) {
         const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
         const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
         const uint32_t sample = probe->points[block->nearest[lane]].sample;

@@ -68,6 +68,17 @@ static bool is_strict(const fitting *job)
     return job->work->samples->strict;
 }
 
+/* Whether triangles would face away; only looked for where that is strict. */
+static bool turns_any(const fitting *job, const simplify_probe *probe)
+{
+    return is_strict(job) && hewn_simplify_probe_turns(job->work, probe, 0) > 0;
+}
+
+static bool turns_more(const simplify_work *work, const simplify_probe *probe, uint32_t before)
+{
+    return hewn_simplify_probe_turns(work, probe, before) > before;
+}
+
 /* --- back to the input -------------------------------------------------------------------------------------------- */
 
 /* Points of a triangle, by what its corners count there. */
@@ -129,6 +140,14 @@ static double pull_ring_back(const fitting *job, uint32_t v, const double to[3],
     return sum;
 }
 
+/* What a move or swap must come to: less of the sum of squares, nothing that is far away and was not, none turned. */
+static void expect(const fitting *job, double gain, simplify_probe *probe)
+{
+    probe->enough = probe->plenty = far_share * job->most;
+    probe->refuses = probe->sums = true;
+    probe->gain = gain;
+}
+
 static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *probe)
 {
     simplify_work *work = job->work;
@@ -152,15 +171,12 @@ static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *pr
             to[axis] = simplify_at(work, v)[axis] + move[axis] / (attempt + 1);
         if (!hewn_simplify_may_move(work, v, to))
             continue;
-        probe->enough = far_share * job->most;
-        probe->plenty = INFINITY;
+        expect(job, job->density > 0 ? 0 : 1, probe);
         HEWN_TRY(hewn_simplify_probe_move(work, v, to, probe));
         const double after = job->density > 0 ? pull_ring_back(job, v, to, NULL, NULL) : 0;
-        if (probe->turned || probe->after + after >= probe->before + before ||
-            fmax(probe->most, probe->back) > far_share * job->most)
+        if (probe->cut || probe->turned || (job->density > 0 && probe->after + after >= probe->before + before))
             continue;
-        const uint32_t turned = is_strict(job) ? hewn_simplify_probe_turns(work, probe) : 0;
-        if (turned > 0 && turned > hewn_simplify_count_turned(work, v, HEWN_NONE))
+        if (turns_any(job, probe) && turns_more(work, probe, hewn_simplify_count_turned(work, v, HEWN_NONE)))
             continue;
         memcpy(work->positions + 3 * (size_t)v, to, sizeof to);
         hewn_simplify_probe_settle(work, probe);
@@ -175,15 +191,13 @@ static hewn_result fit_edge(const fitting *job, uint32_t h, simplify_probe *prob
     simplify_work *work = job->work;
     if (!hewn_simplify_may_swap(work, h))
         return HEWN_OK;
-    probe->enough = far_share * job->most;
-    probe->plenty = INFINITY;
+    expect(job, swap_gain, probe);
     HEWN_TRY(hewn_simplify_probe_swap(work, h, probe));
-    if (probe->turned || probe->after >= swap_gain * probe->before ||
-        fmax(probe->most, probe->back) > far_share * job->most)
+    if (probe->cut)
         return HEWN_OK;
-    const uint32_t turned = is_strict(job) ? hewn_simplify_probe_turns(work, probe) : 0;
-    if (turned > 0 &&
-        turned > (uint32_t)hewn_simplify_is_turned(work, h / 3) + hewn_simplify_is_turned(work, work->twin[h] / 3))
+    if (turns_any(job, probe) &&
+        turns_more(work, probe,
+                   (uint32_t)hewn_simplify_is_turned(work, h / 3) + hewn_simplify_is_turned(work, work->twin[h] / 3)))
         return HEWN_OK;
     hewn_simplify_swap(work, h);
     hewn_simplify_probe_settle(work, probe);
