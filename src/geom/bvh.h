@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "base/clones.h"
 #include "geom/triangle_view.h"
 #include "hewn/base.h"
 
@@ -82,6 +83,34 @@ static inline unsigned hewn_boxes4_meet(const hewn_boxes4 *boxes, const float lo
     }
     meets &= (four){1, 2, 4, 8};
     return (unsigned)(meets[0] | meets[1] | meets[2] | meets[3]);
+}
+
+/* Squared distances to four boxes; of slots without one infinite. */
+static HEWN_INTO_CLONES void hewn_boxes4_squares(const hewn_boxes4 *boxes, const double at[3], double out[4])
+{
+    typedef float quad __attribute__((vector_size(16), aligned(4)));
+    typedef double four __attribute__((vector_size(32), aligned(8)));
+    typedef int64_t bits __attribute__((vector_size(32)));
+    four sum = {0};
+    bits full = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        const four lo = __builtin_convertvector(*(const quad *)boxes->lo[axis], four);
+        const four hi = __builtin_convertvector(*(const quad *)boxes->hi[axis], four);
+        const four under = lo - at[axis], over = at[axis] - hi;
+        const bits low = under > over;
+        four gap = (four)(((bits)under & low) | ((bits)over & ~low));
+        gap = (four)((bits)gap & (gap > 0));
+        sum += gap * gap;
+        full = axis == 0 ? lo <= hi : full;
+    }
+    *(four *)out = (four)(((bits)sum & full) | ((bits)(INFINITY + (four){0}) & ~full));
+}
+
+/* The least of four; the first of those. */
+static inline int hewn_least_of4(const double value[4])
+{
+    const int one = value[1] < value[0] ? 1 : 0, two = value[3] < value[2] ? 3 : 2;
+    return value[two] < value[one] ? two : one;
 }
 
 #endif

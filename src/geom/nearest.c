@@ -1,13 +1,13 @@
 #include "geom/nearest.h"
 
-static double dot(const double a[3], const double b[3])
+static HEWN_INTO_CLONES double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* From a point to a + s ab + t ac. */
-static double length_to(const double at[3], const double a[3], const double ab[3], const double ac[3], double s,
-                        double t)
+static HEWN_INTO_CLONES double length_to(const double at[3], const double a[3], const double ab[3], const double ac[3],
+                                         double s, double t)
 {
     double d[3];
     for (int axis = 0; axis < 3; axis++)
@@ -15,7 +15,7 @@ static double length_to(const double at[3], const double a[3], const double ab[3
     return sqrt(dot(d, d));
 }
 
-static double share(double part, double whole)
+static HEWN_INTO_CLONES double share(double part, double whole)
 {
     double s = whole > 0 ? part / whole : 0;
     return s < 0 ? 0 : s > 1 ? 1 : s;
@@ -71,68 +71,68 @@ typedef struct near_search {
     const hewn_triangle_view *mesh;
     const double *at;
     uint32_t best;
-    double distance, square;
+    double distance, square; /* boxes are looked into that are nearer than the square's root */
+    double enough;
 } near_search;
 
-/* Squared distances to four boxes; of slots without one infinite. */
-static inline void box_distances(const hewn_boxes4 *boxes, const double at[3], double out[4])
-{
-    typedef float quad __attribute__((vector_size(16), aligned(4)));
-    typedef double four __attribute__((vector_size(32), aligned(8)));
-    typedef int64_t bits __attribute__((vector_size(32)));
-    four sum = {0};
-    bits full = {0};
-    for (int axis = 0; axis < 3; axis++) {
-        const four lo = __builtin_convertvector(*(const quad *)boxes->lo[axis], four);
-        const four hi = __builtin_convertvector(*(const quad *)boxes->hi[axis], four);
-        const four under = lo - at[axis], over = at[axis] - hi;
-        const bits low = under > over;
-        four gap = (four)(((bits)under & low) | ((bits)over & ~low));
-        gap = (four)((bits)gap & (gap > 0));
-        sum += gap * gap;
-        full = axis == 0 ? lo <= hi : full;
-    }
-    for (int k = 0; k < 4; k++)
-        out[k] = full[k] ? sum[k] : INFINITY;
-}
-
-static void look_at(near_search *search, uint32_t triangle)
+static inline void look_at(near_search *search, uint32_t triangle)
 {
     double distance = hewn_view_reach(search->mesh, triangle, search->at);
     if (distance < search->distance || (distance == search->distance && triangle < search->best)) {
         search->best = triangle;
         search->distance = distance;
-        search->square = distance * distance;
+        search->square = distance > search->enough ? distance * distance : 0;
     }
 }
 
+/* A block on the way down: boxes that are still to be looked into. */
+typedef struct near_step {
+    double square[4];
+    uint64_t block;
+} near_step;
+
 /* Nearer boxes first, of those as near in the order of their slots; those further away than what was found are passed
  * over. */
-static void descend(near_search *search, uint32_t level, uint64_t block)
+HEWN_CLONES static void descend(near_search *search)
 {
-    double square[4];
-    box_distances(&search->bvh->level[level][block], search->at, square);
+    const hewn_bvh *bvh = search->bvh;
+    near_step steps[HEWN_BVH_LEVELS];
+    const uint32_t top = bvh->level_count - 1;
+    uint32_t level = top;
+    steps[top].block = 0;
+    hewn_boxes4_squares(&bvh->level[top][0], search->at, steps[top].square);
     for (;;) {
-        const int one = square[1] < square[0] ? 1 : 0, two = square[3] < square[2] ? 3 : 2;
-        const int least = square[two] < square[one] ? two : one;
-        if (!(square[least] < search->square))
-            break;
-        square[least] = INFINITY;
-        const uint64_t child = 4 * block + (uint64_t)least;
-        if (level == 0)
-            look_at(search, search->bvh->order[child]);
-        else
-            descend(search, level - 1, child);
+        near_step *step = &steps[level];
+        const int least = hewn_least_of4(step->square);
+        if (!(step->square[least] < search->square)) {
+            if (level++ == top)
+                return;
+            continue;
+        }
+        step->square[least] = INFINITY;
+        const uint64_t child = 4 * step->block + (uint64_t)least;
+        if (level == 0) {
+            look_at(search, bvh->order[child]);
+        } else {
+            steps[--level].block = child;
+            hewn_boxes4_squares(&bvh->level[level][child], search->at, steps[level].square);
+        }
     }
+}
+
+uint32_t hewn_bvh_nearest_within(const hewn_bvh *bvh, const hewn_triangle_view *mesh, const double at[3],
+                                 uint32_t guess, double enough, double *distance)
+{
+    near_search search = {.bvh = bvh, .mesh = mesh, .at = at, .best = guess, .enough = enough};
+    search.distance = hewn_view_reach(mesh, guess, at);
+    search.square = search.distance > enough ? search.distance * search.distance : 0;
+    descend(&search);
+    *distance = search.distance;
+    return search.best;
 }
 
 uint32_t hewn_bvh_nearest(const hewn_bvh *bvh, const hewn_triangle_view *mesh, const double at[3], uint32_t guess,
                           double *distance)
 {
-    near_search search = {.bvh = bvh, .mesh = mesh, .at = at, .best = guess};
-    search.distance = hewn_view_reach(mesh, guess, at);
-    search.square = search.distance * search.distance;
-    descend(&search, bvh->level_count - 1, 0);
-    *distance = search.distance;
-    return search.best;
+    return hewn_bvh_nearest_within(bvh, mesh, at, guess, 0, distance);
 }

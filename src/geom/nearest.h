@@ -17,4 +17,8 @@ double hewn_view_reach(const hewn_triangle_view *mesh, uint32_t triangle, const 
 uint32_t hewn_bvh_nearest(const hewn_bvh *bvh, const hewn_triangle_view *mesh, const double at[3], uint32_t guess,
                           double *distance);
 
+/* The same, but any triangle within `enough` ends the search. */
+uint32_t hewn_bvh_nearest_within(const hewn_bvh *bvh, const hewn_triangle_view *mesh, const double at[3],
+                                 uint32_t guess, double enough, double *distance);
+
 #endif

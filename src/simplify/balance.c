@@ -2,7 +2,9 @@
 
 #include "base/error.h"
 #include "base/progress.h"
+#include "simplify/exchange.h"
 #include "simplify/fit.h"
+#include "simplify/least.h"
 #include "simplify/samples.h"
 #include "simplify/turned.h"
 
@@ -37,15 +39,18 @@ static hewn_result run(simplify_work *work, uint32_t target, bool early, double 
  * result stays. The first is the usual one. There are as many ways as make MOST_TRIED triangles together, but two, one
  * for each of two cores, up to TWICE. */
 static const struct {
-    double aim_factor;
+    double aim_factor, turned_factor;
     bool strict;
-} ways[] = {{1.35, false}, {1.35, true}, {1, true}, {1.8, true}};
+} ways[] = {{1.35, 1000, false}, {1.35, 30, true}, {1, 1000, true}, {1.8, 30, true}};
 enum { WAYS = sizeof ways / sizeof *ways, MOST_TRIED = 240, TWICE = 400 };
 
-static uint32_t count_ways(const simplify_work *work, uint32_t target)
+/* The most triangles for which another way is tried where some face away, and for which they are exchanged. */
+enum { MOST_AGAIN = 20000, MOST_EXCHANGED = 2500 };
+
+static uint32_t count_ways(uint32_t target)
 {
     const uint32_t count = MOST_TRIED / target;
-    if (work->wedges || target > TWICE)
+    if (target > TWICE)
         return 1;
     return count < 2 ? 2 : count < WAYS ? count : WAYS;
 }
@@ -54,19 +59,21 @@ typedef struct balance_attempt {
     simplify_work work;
     simplify_samples samples;
     hewn_simplify_desc desc;
+    uint32_t turned; /* triangles that face away */
     double score;
     hewn_result result;
 } balance_attempt;
 
-static hewn_result finish(simplify_work *work, uint32_t target, uint32_t way, hewn_error *error)
+static hewn_result finish(simplify_work *work, uint32_t target, uint32_t way, uint32_t *turned, hewn_error *error)
 {
     work->samples->aim_factor = ways[way].aim_factor;
+    work->samples->turned_factor = ways[way].turned_factor;
     work->samples->strict = ways[way].strict;
     HEWN_TRY(run(work, target, false, looking, fitting, error));
     HEWN_TRY(begin_step(work, fitting, error));
-    HEWN_TRY(hewn_simplify_fit(work, error));
+    HEWN_TRY(hewn_simplify_fit(work, false, error));
     HEWN_TRY(begin_step(work, righting, error));
-    return hewn_simplify_right(work, error);
+    return hewn_simplify_right(work, turned, error);
 }
 
 static void begin_attempt(const simplify_work *work, balance_attempt *attempt)
@@ -75,41 +82,96 @@ static void begin_attempt(const simplify_work *work, balance_attempt *attempt)
     if (attempt->result == HEWN_OK)
         attempt->result = hewn_simplify_samples_copy(work, &attempt->samples, NULL);
     attempt->desc = *work->desc;
-    attempt->desc.progress = NULL;
     attempt->work.desc = &attempt->desc;
     attempt->work.samples = &attempt->samples;
 }
 
-static hewn_result attempt_all(simplify_work *work, uint32_t target, uint32_t count, hewn_error *error)
+static void end_attempt(balance_attempt *attempt)
 {
-    balance_attempt attempts[WAYS] = {0};
-    uint32_t best = 0;
+    hewn_simplify_release(&attempt->work);
+    hewn_simplify_samples_drop(&attempt->samples);
+}
+
+/* All that follows the first collapses, on a copy. */
+static void try_way(const simplify_work *work, uint32_t target, uint32_t way, balance_attempt *attempt)
+{
+    begin_attempt(work, attempt);
+    attempt->desc.progress = NULL;
+    if (attempt->result == HEWN_OK)
+        attempt->result = finish(&attempt->work, target, way, &attempt->turned, NULL);
+}
+
+/* What came of an attempt goes on, on a copy of its own: triangles go to where they are needed more. */
+static void try_exchange(const balance_attempt *from, uint32_t target, balance_attempt *attempt)
+{
+    begin_attempt(&from->work, attempt);
+    attempt->samples.strict = true;
+    if (attempt->result == HEWN_OK)
+        attempt->result = hewn_simplify_exchange(&attempt->work, target, NULL);
+    if (attempt->result == HEWN_OK)
+        attempt->result = hewn_simplify_right(&attempt->work, &attempt->turned, NULL);
+}
+
+/* The work becomes that of an attempt, which takes the old one to be released. */
+static void take(simplify_work *work, balance_attempt *attempt)
+{
+    const simplify_work before = *work;
+    *work = attempt->work;
+    work->desc = before.desc;
+    work->samples = before.samples;
+    attempt->work = before;
+}
+
+/* The best of `count` attempts, or what has become of it since. */
+static hewn_result choose(balance_attempt *attempts, uint32_t count, uint32_t target, uint32_t *best)
+{
+    *best = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        HEWN_TRY(attempts[i].result);
+        HEWN_TRY(hewn_simplify_score(&attempts[i].work, &attempts[i].score));
+        *best = attempts[i].score < attempts[*best].score ? i : *best;
+    }
+    if (target > MOST_EXCHANGED)
+        return HEWN_OK;
+    try_exchange(&attempts[*best], target, &attempts[count]);
+    HEWN_TRY(attempts[count].result);
+    HEWN_TRY(hewn_simplify_score(&attempts[count].work, &attempts[count].score));
+    *best = attempts[count].score < attempts[*best].score ? count : *best;
+    return HEWN_OK;
+}
+
+/* One way will do where triangles are many, unless some face away. */
+static hewn_result try_first(const simplify_work *work, uint32_t target, balance_attempt *attempts, uint32_t *count,
+                             hewn_error *error)
+{
+    begin_attempt(work, &attempts[0]);
+    HEWN_TRY(attempts[0].result);
+    HEWN_TRY(finish(&attempts[0].work, target, 0, &attempts[0].turned, error));
+    *count = attempts[0].turned > 0 ? 2 : 1;
+    if (*count == 2)
+        try_way(work, target, 1, &attempts[1]);
+    return HEWN_OK;
+}
+
+static hewn_result attempt_all(simplify_work *work, uint32_t target, hewn_error *error)
+{
+    balance_attempt attempts[WAYS + 1] = {0};
+    uint32_t count = count_ways(target), best = 0;
     hewn_result result = HEWN_OK;
+    if (count == 1) {
+        result = try_first(work, target, attempts, &count, error);
+    } else {
 #pragma omp parallel for schedule(dynamic, 1)
-    for (uint32_t i = 0; i < count; i++) {
-        balance_attempt *attempt = &attempts[i];
-        begin_attempt(work, attempt);
-        if (attempt->result == HEWN_OK)
-            attempt->result = finish(&attempt->work, target, i, NULL);
-        if (attempt->result == HEWN_OK)
-            attempt->score = hewn_simplify_score(&attempt->work);
+        for (uint32_t i = 0; i < count; i++)
+            try_way(work, target, i, &attempts[i]);
     }
-    for (uint32_t i = 0; i < count; i++) {
-        result = result == HEWN_OK ? attempts[i].result : result;
-        best = attempts[i].score < attempts[best].score ? i : best;
-    }
-    if (result == HEWN_OK) {
-        const simplify_work before = *work;
-        *work = attempts[best].work;
-        work->desc = before.desc;
-        work->samples = before.samples;
-        attempts[best].work = before;
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        hewn_simplify_release(&attempts[i].work);
-        hewn_simplify_samples_drop(&attempts[i].samples);
-    }
-    return result == HEWN_OK ? HEWN_OK : hewn_fail(error, result, "out of memory simplifying");
+    if (result == HEWN_OK && count > 1)
+        result = choose(attempts, count, target, &best);
+    if (result == HEWN_OK)
+        take(work, &attempts[best]);
+    for (uint32_t i = 0; i < WAYS + 1; i++)
+        end_attempt(&attempts[i]);
+    return result != HEWN_OUT_OF_MEMORY ? result : hewn_fail(error, result, "out of memory simplifying");
 }
 
 hewn_result hewn_simplify_balanced(simplify_work *work, const hewn_polygons *input, uint32_t target, hewn_error *error)
@@ -119,13 +181,17 @@ hewn_result hewn_simplify_balanced(simplify_work *work, const hewn_polygons *inp
     const bool counted = work->wedges && work->wedges->counted > 0; /* attributes have a say in where vertices are */
     if (target == 0 || target > most / 2 || counted)
         return run(work, target, false, 0, 1, error);
-    HEWN_TRY(run(work, begin_at(most, target), true, 0, sampling, error));
+    uint32_t least = 0;
+    if (target <= TWICE) /* a number that topology does not allow is no measure of what comes before it */
+        HEWN_TRY(hewn_simplify_least(work, &least, error));
+    HEWN_TRY(run(work, begin_at(most, least > target ? target + least : target), true, 0, sampling, error));
     HEWN_TRY(begin_step(work, sampling, error));
     hewn_result result = hewn_simplify_samples_make(work, input, target, &samples, error);
-    const uint32_t count = count_ways(work, target);
+    uint32_t turned;
     work->samples = &samples;
     if (result == HEWN_OK)
-        result = count > 1 ? attempt_all(work, target, count, error) : finish(work, target, 0, error);
+        result = target <= MOST_AGAIN && !work->wedges ? attempt_all(work, target, error)
+                                                       : finish(work, target, 0, &turned, error);
     work->samples = NULL;
     hewn_simplify_samples_release(&samples);
     return result;

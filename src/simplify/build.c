@@ -4,7 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "simplify/work.h"
+#include "simplify/samples.h"
 
 /* --- coordinates -------------------------------------------------------------------------------------------------- */
 
@@ -292,4 +292,45 @@ hewn_result hewn_simplify_copy(const simplify_work *work, simplify_work *out, he
     out->wedge = copy_of(work->wedge, halves, sizeof *work->wedge, &failed);
     out->into = copy_of(work->into, work->input_count, sizeof *work->into, &failed);
     return failed ? hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying") : HEWN_OK;
+}
+
+/* An array with room for more; `*failed` where memory is out. */
+static void grow(void **array, size_t count, size_t size, bool *failed)
+{
+    void *more = *array && !*failed ? hewn_realloc(*array, count, size) : NULL;
+    *failed |= *array && !more;
+    *array = more ? more : *array;
+}
+
+hewn_result hewn_simplify_grow(simplify_work *work, uint32_t vertices, uint32_t faces, hewn_error *error)
+{
+    const size_t verts = (size_t)work->vertex_count + vertices, all = (size_t)work->face_count + faces;
+    bool failed = work->groups || work->wedge;
+    grow((void **)&work->positions, 3 * verts, sizeof *work->positions, &failed);
+    grow((void **)&work->quadrics, verts, sizeof *work->quadrics, &failed);
+    grow((void **)&work->facing, 3 * verts, sizeof *work->facing, &failed);
+    grow((void **)&work->half, verts, sizeof *work->half, &failed);
+    grow((void **)&work->rank, verts, sizeof *work->rank, &failed);
+    grow((void **)&work->origins, verts, sizeof *work->origins, &failed);
+    grow((void **)&work->limit, verts, sizeof *work->limit, &failed);
+    grow((void **)&work->tail, 3 * all, sizeof *work->tail, &failed);
+    grow((void **)&work->twin, 3 * all, sizeof *work->twin, &failed);
+    grow((void **)&work->key, 3 * all, sizeof *work->key, &failed);
+    grow((void **)&work->flags, 3 * all, sizeof *work->flags, &failed);
+    grow((void **)&work->face_origins, all, sizeof *work->face_origins, &failed);
+    if (work->samples)
+        grow((void **)&work->samples->first, all, sizeof *work->samples->first, &failed);
+    if (failed)
+        return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
+    for (size_t v = work->vertex_count; v < verts; v++)
+        work->half[v] = SIMPLIFY_GONE;
+    for (size_t f = work->face_count; f < all; f++) {
+        for (size_t k = 0; k < 3; k++)
+            work->tail[3 * f + k] = work->twin[3 * f + k] = HEWN_NONE;
+        if (work->samples)
+            work->samples->first[f] = HEWN_NONE;
+    }
+    work->vertex_count = (uint32_t)verts;
+    work->face_count = (uint32_t)all;
+    return HEWN_OK;
 }

@@ -38,18 +38,16 @@ uint32_t hewn_simplify_sides(const simplify_work *work, const simplify_plan *pla
 }
 
 /* The sum of both ends' quadrics, of all fans. */
-static simplify_quadric sum_ends(const simplify_work *work, const simplify_plan *plan)
+static void sum_ends(const simplify_work *work, const simplify_plan *plan, simplify_quadric *sum)
 {
     simplify_side sides[SIMPLIFY_MOST_TIED];
-    simplify_quadric q = work->quadrics[plan->gone];
-    simplify_quadric_add(&q, &work->quadrics[plan->kept]);
+    simplify_quadric_sum(&work->quadrics[plan->gone], &work->quadrics[plan->kept], sum);
     const uint32_t count = simplify_is_tied(work, plan->gone) ? hewn_simplify_sides(work, plan, sides) : 0;
     for (uint32_t i = 0; i < count; i++)
         if (sides[i].gone != plan->gone) {
-            simplify_quadric_add(&q, &work->quadrics[sides[i].gone]);
-            simplify_quadric_add(&q, &work->quadrics[sides[i].kept]);
+            simplify_quadric_add(sum, &work->quadrics[sides[i].gone]);
+            simplify_quadric_add(sum, &work->quadrics[sides[i].kept]);
         }
-    return q;
 }
 
 /* --- what it costs ------------------------------------------------------------------------------------------------ */
@@ -96,17 +94,20 @@ simplify_plan hewn_simplify_plan(const simplify_work *work, uint32_t half)
     const bool feature = work->flags[half] & SIMPLIFY_FEATURE;
     if (low >= SIMPLIFY_CORNER || high == SIMPLIFY_APART || (low == SIMPLIFY_CREASE && !feature))
         return plan;
-    simplify_quadric q = sum_ends(work, &plan), all = q;
+    simplify_quadric q;
+    sum_ends(work, &plan, &q);
     const bool counted = work->wedges && work->wedges->counted > 0;
     const simplify_pairs pairs = counted ? hewn_simplify_pair(work, half, a) : (simplify_pairs){0};
-    if (counted && low == high)
-        hewn_simplify_add_pairs(work, &pairs, &all);
-    if (low < high)
+    if (low < high) {
         try_place(&q, simplify_at(work, b), &plan);
-    else
+        plan.cost += counted ? hewn_simplify_pairs_cost(work, &pairs, plan.at) : 0;
+    } else if (counted) {
+        simplify_quadric all = q;
+        hewn_simplify_add_pairs(work, &pairs, &all);
         place(&all, simplify_at(work, a), simplify_at(work, b), &plan);
-    if (counted && low < high)
-        plan.cost += hewn_simplify_pairs_cost(work, &pairs, plan.at);
+    } else {
+        place(&q, simplify_at(work, a), simplify_at(work, b), &plan);
+    }
     if (work->limit) {
         const double limit = (double)fminf(work->limit[a], work->limit[b]);
         plan.far = simplify_quadric_value(&q, plan.at) > limit * limit * q.weight;

@@ -1,5 +1,5 @@
-/* Triangles around one place, as they would be with a vertex there, and which of them is nearest to points: four at a
- * time. All is relative to the place. */
+/* Triangles around one place, as they would be with a vertex there, and which of them is nearest to points: four points
+ * at a time. All is relative to the place. */
 #ifndef HEWN_SRC_SIMPLIFY_FAN_H
 #define HEWN_SRC_SIMPLIFY_FAN_H
 
@@ -10,6 +10,8 @@
 #include "hewn/base.h"
 
 enum { SIMPLIFY_FOUR = 4 };
+
+#define SIMPLIFY_NOWHERE 0xFFFFFFFFu
 
 /* Each has the place and two more corners, p and q; what is left over in the last block is like its last one. Vectors
  * outward, of any length, across the sides from the place to p, from p to q and from q to the place; then the normal.
@@ -26,13 +28,13 @@ typedef struct simplify_fan_block {
 typedef struct simplify_fan {
     uint32_t count; /* of triangles */
     simplify_fan_block *blocks;
-    double *least, *beyond; /* of one point: no distance is less; how far it is out of the triangle */
+    double *least, *beyond; /* of four points: no distance is less; how far they are out of the triangle */
     size_t capacity, least_capacity, beyond_capacity;
 } simplify_fan;
 
 typedef struct simplify_fan_point {
     double at[3], square; /* distance to the nearest triangle */
-    uint32_t near;        /* that triangle's number in the fan */
+    uint32_t near;        /* that triangle's number in the fan; SIMPLIFY_NOWHERE: it is to be found */
     uint32_t sample;      /* the caller's */
 } simplify_fan_point;
 
@@ -50,8 +52,12 @@ hewn_result hewn_simplify_fan_add(simplify_fan *fan, uint32_t face, const double
 /* Once all are there. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_fan_settle(simplify_fan *fan);
 
-/* The nearest triangle of each point. There must be one. */
+/* The nearest triangle of each point that is nowhere. There must be one. */
 void hewn_simplify_fan_nearest(const simplify_fan *fan, simplify_fan_point *points, size_t count);
+
+/* Whether a triangle is at a squared distance of at most `most`: then what hewn_simplify_fan_nearest() finds is no more
+ * than that, to the bit. False where the two are as good as equal. */
+bool hewn_simplify_fan_is_within(const simplify_fan *fan, uint32_t face, const double at[3], double most);
 
 /* The nearest point of each mark; the first of those that are as near. There must be one. */
 void hewn_simplify_find_marks(const simplify_fan_point *points, size_t count, simplify_mark_block *marks,

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
+#include "geom/nearest.h"
 #include "simplify/collapse.h"
 #include "simplify/swap.h"
 
@@ -21,6 +22,7 @@ enum { PART = 512, SWEEPS = 2, MOST_SWAPPED = 2500 };
 typedef struct fitting {
     simplify_work *work;
     double mean, most;
+    double density;  /* of samples, by twice the area, where distances back to the input count as well; or 0 */
     uint8_t *inside; /* one a vertex: all its neighbours are of the same part */
     uint32_t parts;
     uint32_t *faces; /* the first triangle of each part, by its first vertex; and one more */
@@ -60,6 +62,92 @@ static void pull(const fitting *job, uint32_t h, simplify_quadric *q, double to[
     }
 }
 
+/* Whether moves and swaps look at all of the input for what triangles face away from. */
+static bool is_strict(const fitting *job)
+{
+    return job->work->samples->strict;
+}
+
+/* Whether triangles would face away; only looked for where that is strict. */
+static bool turns_any(const fitting *job, const simplify_probe *probe)
+{
+    return is_strict(job) && hewn_simplify_probe_turns(job->work, probe, 0) > 0;
+}
+
+static bool turns_more(const simplify_work *work, const simplify_probe *probe, uint32_t before)
+{
+    return hewn_simplify_probe_turns(work, probe, before) > before;
+}
+
+/* --- back to the input -------------------------------------------------------------------------------------------- */
+
+/* Points of a triangle, by what its corners count there. */
+enum { POINTS = 4 };
+static const double points[POINTS][3] = {
+    {1.0 / 3, 1.0 / 3, 1.0 / 3}, {2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}};
+
+/* The sum of squared distances from points of one triangle at `to` to the input, as samples are weighed; they pull its
+ * first corner to the planes of what is nearest. */
+static double pull_back(const fitting *job, const double to[3], const double b[3], const double c[3], uint32_t *near,
+                        simplify_quadric *q, double pulled[3])
+{
+    const simplify_samples *samples = job->work->samples;
+    double n[3], sum = 0;
+    simplify_area_vector(to, b, c, n);
+    const double weight = job->density * sqrt(simplify_dot(n, n)) / POINTS;
+    for (int i = 0; i < POINTS; i++) {
+        double at[3], m[3], away[3], distance;
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = points[i][0] * to[axis] + points[i][1] * b[axis] + points[i][2] * c[axis];
+        *near = hewn_bvh_nearest(&samples->bvh, &samples->input, at, *near, &distance);
+        sum += weight * distance * distance;
+        if (!q)
+            continue;
+        const uint32_t *corner = samples->input.corners + 3 * (size_t)*near;
+        const double *from = samples->positions + 3 * (size_t)corner[0];
+        simplify_area_vector(from, samples->positions + 3 * (size_t)corner[1],
+                             samples->positions + 3 * (size_t)corner[2], m);
+        const double square = simplify_dot(m, m), share = points[i][0];
+        if (!(square > 0))
+            continue;
+        simplify_between(at, from, away);
+        const double height = simplify_dot(away, m) / square;
+        const double x = weight * share * share / square;
+        q->a[0] += x * m[0] * m[0];
+        q->a[1] += x * m[0] * m[1];
+        q->a[2] += x * m[0] * m[2];
+        q->a[3] += x * m[1] * m[1];
+        q->a[4] += x * m[1] * m[2];
+        q->a[5] += x * m[2] * m[2];
+        for (int axis = 0; axis < 3; axis++)
+            pulled[axis] += weight * share * height * m[axis];
+    }
+    return sum;
+}
+
+static double pull_ring_back(const fitting *job, uint32_t v, const double to[3], simplify_quadric *q, double pulled[3])
+{
+    const simplify_work *work = job->work;
+    const uint32_t first = work->half[v];
+    uint32_t h = first, near = work->face_origins[first / 3];
+    double sum = 0;
+    do {
+        const uint32_t in = simplify_prev(h);
+        sum += pull_back(job, to, simplify_at(work, simplify_head(work, h)), simplify_at(work, work->tail[in]), &near,
+                         q, pulled);
+        h = work->twin[in];
+    } while (h != HEWN_NONE && h != first);
+    return sum;
+}
+
+/* What a move or swap must come to: less of the sum of squares, nothing that is far away and was not, none turned. */
+static void expect(const fitting *job, double gain, simplify_probe *probe)
+{
+    probe->enough = probe->plenty = far_share * job->most;
+    probe->refuses = probe->sums = true;
+    probe->gain = gain;
+}
+
 static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *probe)
 {
     simplify_work *work = job->work;
@@ -71,6 +159,7 @@ static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *pr
         pull(job, h, &q, pulled);
         h = simplify_turn(work, h);
     } while (h != HEWN_NONE && h != first);
+    const double before = job->density > 0 ? pull_ring_back(job, v, simplify_at(work, v), &q, pulled) : 0;
     const double stay = stay_share * (q.a[0] + q.a[3] + q.a[5]);
     q.a[0] += stay;
     q.a[3] += stay;
@@ -82,10 +171,12 @@ static hewn_result fit_vertex(const fitting *job, uint32_t v, simplify_probe *pr
             to[axis] = simplify_at(work, v)[axis] + move[axis] / (attempt + 1);
         if (!hewn_simplify_may_move(work, v, to))
             continue;
-        probe->enough = far_share * job->most;
-        probe->plenty = INFINITY;
+        expect(job, job->density > 0 ? 0 : 1, probe);
         HEWN_TRY(hewn_simplify_probe_move(work, v, to, probe));
-        if (probe->turned || probe->after >= probe->before || fmax(probe->most, probe->back) > far_share * job->most)
+        const double after = job->density > 0 ? pull_ring_back(job, v, to, NULL, NULL) : 0;
+        if (probe->cut || probe->turned || (job->density > 0 && probe->after + after >= probe->before + before))
+            continue;
+        if (turns_any(job, probe) && turns_more(work, probe, hewn_simplify_count_turned(work, v, HEWN_NONE)))
             continue;
         memcpy(work->positions + 3 * (size_t)v, to, sizeof to);
         hewn_simplify_probe_settle(work, probe);
@@ -100,11 +191,13 @@ static hewn_result fit_edge(const fitting *job, uint32_t h, simplify_probe *prob
     simplify_work *work = job->work;
     if (!hewn_simplify_may_swap(work, h))
         return HEWN_OK;
-    probe->enough = far_share * job->most;
-    probe->plenty = INFINITY;
+    expect(job, swap_gain, probe);
     HEWN_TRY(hewn_simplify_probe_swap(work, h, probe));
-    if (probe->turned || probe->after >= swap_gain * probe->before ||
-        fmax(probe->most, probe->back) > far_share * job->most)
+    if (probe->cut)
+        return HEWN_OK;
+    if (turns_any(job, probe) &&
+        turns_more(work, probe,
+                   (uint32_t)hewn_simplify_is_turned(work, h / 3) + hewn_simplify_is_turned(work, work->twin[h] / 3)))
         return HEWN_OK;
     hewn_simplify_swap(work, h);
     hewn_simplify_probe_settle(work, probe);
@@ -213,9 +306,22 @@ static hewn_result sweep(const fitting *job, bool last)
     return failed ? HEWN_OUT_OF_MEMORY : HEWN_OK;
 }
 
-hewn_result hewn_simplify_fit(simplify_work *work, hewn_error *error)
+static double find_density(const simplify_work *work)
 {
-    fitting job = {.work = work, .inside = hewn_alloc(work->vertex_count, 1)};
+    double area = 0;
+    for (uint32_t f = 0; f < work->face_count; f++) {
+        const uint32_t *corner = work->tail + 3 * (size_t)f;
+        double n[3];
+        simplify_area_vector(simplify_at(work, corner[0]), simplify_at(work, corner[1]), simplify_at(work, corner[2]),
+                             n);
+        area += sqrt(simplify_dot(n, n));
+    }
+    return area > 0 ? work->samples->count / area : 0;
+}
+
+hewn_result hewn_simplify_fit(simplify_work *work, bool back, hewn_error *error)
+{
+    fitting job = {.work = work, .density = back ? find_density(work) : 0, .inside = hewn_alloc(work->vertex_count, 1)};
     job.parts = (work->vertex_count + PART - 1) / PART;
     job.faces = hewn_alloc((size_t)job.parts + 1, sizeof *job.faces);
     hewn_result result = job.inside && job.faces ? HEWN_OK : HEWN_OUT_OF_MEMORY;
@@ -223,10 +329,10 @@ hewn_result hewn_simplify_fit(simplify_work *work, hewn_error *error)
         find_inside(&job);
         split(&job);
     }
-    for (int i = 0; i < SWEEPS && result == HEWN_OK; i++) {
+    for (int i = 0; i < (back ? 1 : SWEEPS) && result == HEWN_OK; i++) {
         find_gaps(&job);
         if (job.mean > 0)
-            result = sweep(&job, i + 1 == SWEEPS);
+            result = sweep(&job, back || i + 1 == SWEEPS);
     }
     hewn_free(job.inside);
     hewn_free(job.faces);

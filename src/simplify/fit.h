@@ -4,7 +4,8 @@
 
 #include "simplify/samples.h"
 
-/* `work` has samples and is in order. The same for any number of threads. HEWN_OUT_OF_MEMORY. */
-hewn_result hewn_simplify_fit(simplify_work *work, hewn_error *error);
+/* `work` has samples and is in order. `back`: distances from the mesh to the input count as well as those of samples,
+ * which takes several times as long. The same for any number of threads. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_fit(simplify_work *work, bool back, hewn_error *error);
 
 #endif

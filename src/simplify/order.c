@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "base/alloc.h"
+#include "base/clones.h"
 #include "base/error.h"
 #include "simplify/samples.h"
 
@@ -15,7 +16,7 @@ static int bits_of(uint32_t count)
 /* --- the curve ---------------------------------------------------------------------------------------------------- */
 
 /* Two zero bits between all bits of a number of AXIS_BITS. */
-static uint64_t spread(uint64_t x)
+static HEWN_INTO_CLONES uint64_t spread(uint64_t x)
 {
     x = (x | x << 32) & 0x1f00000000ffffu;
     x = (x | x << 16) & 0x1f0000ff0000ffu;
@@ -24,37 +25,47 @@ static uint64_t spread(uint64_t x)
     return (x | x << 2) & 0x1249249249249249u;
 }
 
-/* From coordinates to those whose bits, one of each in turn, are the place along the curve (Skilling 2004,
- * 'Programming the Hilbert curve'). */
-static void transpose(uint32_t x[3], int bits)
+/* Points whose places are found at a time. */
+enum { MANY = 64 };
+
+/* From coordinates, an array an axis, to those whose bits, one of each in turn, are the place along the curve (Skilling
+ * 2004, 'Programming the Hilbert curve'). */
+static HEWN_INTO_CLONES void transpose(uint32_t x[3][MANY], int bits)
 {
     for (uint32_t bit = 1u << (bits - 1); bit > 1; bit >>= 1) {
         const uint32_t below = bit - 1;
-        for (int axis = 0; axis < 3; axis++) { /* turned over, or changed with the first */
-            const uint32_t over = x[axis] & bit ? below : 0, swapped = (x[0] ^ x[axis]) & below & ~over;
-            x[0] ^= over | swapped;
-            x[axis] ^= swapped;
-        }
+        for (int axis = 0; axis < 3; axis++) /* turned over, or changed with the first */
+            for (int i = 0; i < MANY; i++) {
+                const uint32_t over = x[axis][i] & bit ? below : 0;
+                const uint32_t swapped = (x[0][i] ^ x[axis][i]) & below & ~over;
+                x[0][i] ^= over | swapped;
+                x[axis][i] ^= swapped;
+            }
     }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    uint32_t rest = x[2];
-    for (int shift = 1; shift < bits; shift *= 2) /* of the bits above each, whether they are odd in number */
-        rest ^= rest >> shift;
-    rest = rest >> 1;
-    for (int axis = 0; axis < 3; axis++)
-        x[axis] ^= rest;
+    for (int i = 0; i < MANY; i++) {
+        x[1][i] ^= x[0][i];
+        x[2][i] ^= x[1][i];
+        uint32_t rest = x[2][i];
+        for (int shift = 1; shift < 2 * AXIS_BITS;
+             shift *= 2) /* of the bits above each, whether they are odd in number */
+            rest ^= rest >> shift;
+        rest = rest >> 1;
+        for (int axis = 0; axis < 3; axis++)
+            x[axis][i] ^= rest;
+    }
 }
 
 /* Coordinates take half the width of the cube, so it can be moved by the other half. */
-static uint64_t key_of(const double at[3], const double shift[3], int bits)
+HEWN_CLONES static void find_keys(double at[3][MANY], const double shift[3], int bits, uint64_t key[MANY])
 {
     const double most = (1 << bits) - 1;
-    uint32_t x[3];
+    uint32_t x[3][MANY];
     for (int axis = 0; axis < 3; axis++)
-        x[axis] = (uint32_t)(((at[axis] + 1) / 4 + shift[axis] / 2) * most);
+        for (int i = 0; i < MANY; i++)
+            x[axis][i] = (uint32_t)(int32_t)(((at[axis][i] + 1) / 4 + shift[axis] / 2) * most);
     transpose(x, bits);
-    return spread(x[0]) << 2 | spread(x[1]) << 1 | spread(x[2]);
+    for (int i = 0; i < MANY; i++)
+        key[i] = spread(x[0][i]) << 2 | spread(x[1][i]) << 1 | spread(x[2][i]);
 }
 
 typedef struct keyed {
@@ -85,6 +96,45 @@ static keyed *sort_keys(keyed *from, keyed *to, uint32_t count)
     return from;
 }
 
+/* Of items in order, `find` tells where each is. */
+typedef void find_place(const void *context, uint32_t item, double out[3]);
+
+static void key_items(keyed *items, uint32_t count, const double shift[3], find_place *find, const void *context)
+{
+    const int bits = bits_of(count);
+#pragma omp parallel for schedule(static) if (count > SIMPLIFY_FEW)
+    for (uint32_t begin = 0; begin < count; begin += MANY) {
+        const uint32_t some = count - begin < MANY ? count - begin : MANY;
+        double at[3][MANY] = {{0}}, place[3];
+        uint64_t key[MANY];
+        for (uint32_t i = 0; i < some; i++) {
+            find(context, items[begin + i].item, place);
+            for (int axis = 0; axis < 3; axis++)
+                at[axis][i] = place[axis];
+        }
+        find_keys(at, shift, bits, key);
+        for (uint32_t i = 0; i < some; i++)
+            items[begin + i].key = key[i];
+    }
+}
+
+static void find_vertex(const void *context, uint32_t v, double out[3])
+{
+    const simplify_work *work = context;
+    memcpy(out, simplify_at(work, v), 3 * sizeof *out);
+}
+
+static void find_middle(const void *context, uint32_t t, double out[3])
+{
+    const hewn_triangle_view *triangles = context;
+    const uint32_t *corner = triangles->corners + 3 * (size_t)t;
+    for (size_t axis = 0; axis < 3; axis++)
+        out[axis] = 0;
+    for (size_t k = 0; k < 3; k++)
+        for (size_t axis = 0; axis < 3; axis++)
+            out[axis] += triangles->doubles[3 * (size_t)corner[k] + axis] / 3;
+}
+
 /* The vertices that are left, in order. */
 static uint32_t *order_vertices(const simplify_work *work, uint32_t round, uint32_t *count)
 {
@@ -92,15 +142,12 @@ static uint32_t *order_vertices(const simplify_work *work, uint32_t round, uint3
     const double shift[3] = {fmod(step, 1), fmod(step + 0.33, 1), fmod(step + 0.67, 1)};
     keyed *keys = hewn_alloc(work->live_vertices, 2 * sizeof *keys);
     uint32_t *order = hewn_alloc(work->live_vertices, sizeof *order);
-    const int bits = bits_of(work->live_vertices);
     *count = 0;
     if (keys && order) {
         for (uint32_t v = 0; v < work->vertex_count; v++)
             if (work->half[v] != SIMPLIFY_GONE)
                 keys[(*count)++].item = v;
-#pragma omp parallel for schedule(static) if (work->vertex_count > SIMPLIFY_FEW)
-        for (uint32_t i = 0; i < *count; i++)
-            keys[i].key = key_of(simplify_at(work, keys[i].item), shift, bits);
+        key_items(keys, *count, shift, find_vertex, work);
         const keyed *sorted = sort_keys(keys, keys + *count, *count);
         for (uint32_t i = 0; i < *count; i++)
             order[i] = sorted[i].item;
@@ -119,15 +166,9 @@ uint32_t *hewn_simplify_along(const hewn_triangle_view *triangles)
     keyed *keys = hewn_alloc(count, 2 * sizeof *keys);
     uint32_t *order = hewn_alloc((size_t)count + 3, sizeof *order);
     if (keys && order) {
-#pragma omp parallel for schedule(static) if (count > SIMPLIFY_FEW)
-        for (uint32_t t = 0; t < count; t++) {
-            const uint32_t *corner = triangles->corners + 3 * (size_t)t;
-            double middle[3] = {0};
-            for (size_t k = 0; k < 3; k++)
-                for (size_t axis = 0; axis < 3; axis++)
-                    middle[axis] += triangles->doubles[3 * (size_t)corner[k] + axis] / 3;
-            keys[t] = (keyed){key_of(middle, unmoved, bits_of(count)), t};
-        }
+        for (uint32_t t = 0; t < count; t++)
+            keys[t].item = t;
+        key_items(keys, count, unmoved, find_middle, triangles);
         const keyed *sorted = sort_keys(keys, keys + count, count);
         for (uint32_t t = 0; t < count; t++)
             order[t] = sorted[t].item;

@@ -3,22 +3,17 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "geom/nearest.h"
-#include "simplify/samples.h"
+#include "simplify/probe_mark.h"
+#include "simplify/split.h"
 
 /* The cosine between triangles that meet in a ridge, and the square of one between what faces the same way. */
 static const double ridge_cosine = 0.92, least_along = 0.25;
 
+/* A squared distance that is more than this times what it was has grown. */
+static const double grown = 1.002;
+
 /* Samples that are placed at a time: what has most to lose first, and no more is looked at where that is too far. */
 enum { AT_ONCE = 24 };
-
-/* Points of the mesh as it would be: the new vertex, a triangle's middle, or that of its side towards the one before.
- */
-typedef enum mark_kind { MARK_VERTEX, MARK_RIDGE, MARK_MIDDLE } mark_kind;
-
-typedef struct probe_mark {
-    uint32_t face; /* of the fan */
-    mark_kind kind;
-} probe_mark;
 
 void hewn_simplify_probe_release(simplify_probe *probe)
 {
@@ -59,8 +54,11 @@ static uint32_t face_of(const simplify_probe *probe, uint32_t near)
 
 /* --- samples ------------------------------------------------------------------------------------------------------ */
 
-/* Samples of one triangle. */
-static hewn_result take_samples(const simplify_samples *samples, uint32_t face, const double at[3],
+/* A sample that waits to be placed: it makes no difference where. */
+static const uint32_t deferred = SIMPLIFY_NOWHERE - 1;
+
+/* Samples of one triangle, `own` in the fan or SIMPLIFY_NOWHERE. */
+static hewn_result take_samples(const simplify_samples *samples, uint32_t face, uint32_t own, const double at[3],
                                 simplify_probe *probe)
 {
     for (uint32_t s = samples->first[face]; s != HEWN_NONE; s = samples->items[s].next) {
@@ -68,8 +66,12 @@ static hewn_result take_samples(const simplify_samples *samples, uint32_t face, 
             HEWN_TRY(hewn_reserve((void **)&probe->points, &probe->point_capacity, probe->point_count + 1,
                                   sizeof *probe->points, NULL));
         simplify_fan_point *point = &probe->points[probe->point_count++];
+        const double was = (double)samples->items[s].gap, most = fmax(was * was * grown, probe->most * probe->most);
         point->sample = s;
+        point->near = SIMPLIFY_NOWHERE;
         simplify_between(at, samples->items[s].at, point->at);
+        if (!probe->sums && own != SIMPLIFY_NOWHERE && hewn_simplify_fan_is_within(&probe->fan, own, point->at, most))
+            point->near = deferred;
     }
     return HEWN_OK;
 }
@@ -79,11 +81,13 @@ static void place_samples(const simplify_samples *samples, size_t from, simplify
 {
     hewn_simplify_fan_nearest(&probe->fan, probe->points + from, probe->point_count - from);
     for (size_t i = from; i < probe->point_count; i++) {
+        if (probe->points[i].near == deferred)
+            continue;
         const simplify_sample *sample = &samples->items[probe->points[i].sample];
         const double was = (double)sample->gap, square = probe->points[i].square;
         probe->before += (double)sample->weight * was * was;
         probe->after += (double)sample->weight * square;
-        if (square > was * was * 1.002 && square > probe->most * probe->most)
+        if (square > was * was * grown && square > probe->most * probe->most)
             probe->most = sqrt(square);
     }
     probe->cut = probe->most > probe->plenty;
@@ -144,24 +148,52 @@ static hewn_result list_marks(simplify_probe *probe)
     return HEWN_OK;
 }
 
-/* The triangle of the input near a point: of those around the nearest sample, or of all where that is not near enough
- * to make no difference. Without `exact` any that is near enough will do. */
-static uint32_t look_back(const simplify_samples *samples, uint32_t sample, const double at[3], bool exact,
-                          simplify_probe *probe)
+/* The nearest to a point of the input's triangles around a sample; the first within `enough` will do. */
+static uint32_t look_around(const simplify_samples *samples, uint32_t sample, const double at[3], double enough,
+                            double *least)
 {
-    const double enough = fmax(probe->enough, fmax(probe->most, probe->back));
-    double least = INFINITY;
     uint32_t near = 0;
-    for (uint32_t i = samples->rings[sample]; i < samples->rings[sample + 1]; i++) {
+    *least = INFINITY;
+    for (uint32_t i = samples->rings[sample]; i < samples->rings[sample + 1] && *least > enough; i++) {
         const uint32_t *corner = samples->input.corners + 3 * (size_t)samples->faces[i];
         const double distance =
             hewn_triangle_reach(at, samples->positions + 3 * (size_t)corner[0],
                                 samples->positions + 3 * (size_t)corner[1], samples->positions + 3 * (size_t)corner[2]);
-        near = distance < least ? samples->faces[i] : near;
-        least = distance < least ? distance : least;
-        if (least <= enough && !exact)
-            return near;
+        near = distance < *least ? samples->faces[i] : near;
+        *least = distance < *least ? distance : *least;
     }
+    return near;
+}
+
+/* What makes no difference any more. */
+static double enough_of(const simplify_probe *probe)
+{
+    return fmax(probe->enough, fmax(probe->most, probe->back));
+}
+
+/* How far a point is from the input, where that makes a difference; a sample, one of the input's vertices, is near it,
+ * `square` the squared distance. */
+static void reach_back(const simplify_samples *samples, uint32_t sample, double square, const double at[3],
+                       simplify_probe *probe)
+{
+    const double enough = enough_of(probe);
+    double least;
+    if (square < enough * enough)
+        return;
+    const uint32_t near = look_around(samples, sample, at, enough, &least);
+    if (!(least <= enough)) {
+        (void)hewn_bvh_nearest_within(&samples->bvh, &samples->input, at, near, enough, &least);
+        probe->back = fmax(least, probe->back);
+    }
+}
+
+/* The triangle of the input near a point: of those around the nearest sample, or of all where that is not near enough
+ * to make no difference. */
+static uint32_t look_back(const simplify_samples *samples, uint32_t sample, const double at[3], simplify_probe *probe)
+{
+    const double enough = enough_of(probe);
+    double least;
+    uint32_t near = look_around(samples, sample, at, -1, &least);
     if (!(least <= enough)) {
         near = hewn_bvh_nearest(&samples->bvh, &samples->input, at, near, &least);
         probe->back = fmax(least, probe->back);
@@ -172,41 +204,9 @@ static uint32_t look_back(const simplify_samples *samples, uint32_t sample, cons
 /* Whether a triangle of the input faces away from a normal. */
 static bool faces_away(const simplify_samples *samples, uint32_t near, const double normal[3])
 {
-    const uint32_t *corner = samples->input.corners + 3 * (size_t)near;
     double n[3];
-    simplify_area_vector(samples->positions + 3 * (size_t)corner[0], samples->positions + 3 * (size_t)corner[1],
-                         samples->positions + 3 * (size_t)corner[2], n);
+    hewn_triangle_normal(&samples->input, near, n);
     return simplify_dot(normal, n) < 0;
-}
-
-/* A triangle of the input near a point of a triangle: one around the nearest of its samples. */
-static uint32_t guess_near(const simplify_work *work, uint32_t face, const double at[3])
-{
-    const simplify_samples *samples = work->samples;
-    uint32_t near = work->face_origins[face];
-    double least = INFINITY;
-    for (uint32_t s = samples->first[face]; s != HEWN_NONE; s = samples->items[s].next) {
-        double away[3];
-        simplify_between(at, samples->items[s].at, away);
-        const double square = simplify_dot(away, away);
-        near = square < least ? samples->faces[samples->rings[s]] : near;
-        least = square < least ? square : least;
-    }
-    return near;
-}
-
-bool hewn_simplify_is_turned(const simplify_work *work, uint32_t face)
-{
-    const simplify_samples *samples = work->samples;
-    const uint32_t *corner = work->tail + 3 * (size_t)face;
-    const double *a = simplify_at(work, corner[0]), *b = simplify_at(work, corner[1]),
-                 *c = simplify_at(work, corner[2]);
-    double middle[3], n[3], distance;
-    for (int axis = 0; axis < 3; axis++)
-        middle[axis] = (a[axis] + b[axis] + c[axis]) / 3;
-    simplify_area_vector(a, b, c, n);
-    const uint32_t guess = guess_near(work, face, middle);
-    return faces_away(samples, hewn_bvh_nearest(&samples->bvh, &samples->input, middle, guess, &distance), n);
 }
 
 /* Whether the surface around a sample faces so much as a triangle does that all of it will. */
@@ -223,7 +223,7 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
     memcpy(probe->place, at, sizeof probe->place);
     hewn_simplify_find_marks(probe->points, probe->point_count, probe->blocks,
                              (probe->mark_count + SIMPLIFY_FOUR - 1) / SIMPLIFY_FOUR);
-    for (size_t i = 0; i < probe->mark_count; i++) {
+    for (size_t i = 0; i < probe->mark_count && !probe->cut; i++) {
         const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
         const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
         const uint32_t sample = probe->points[block->nearest[lane]].sample;
@@ -232,56 +232,37 @@ static hewn_result look_at_marks(const simplify_samples *samples, const double a
         for (int axis = 0; axis < 3; axis++)
             place[axis] += at[axis];
         if (probe->marks[i].kind != MARK_MIDDLE) {
-            (void)look_back(samples, sample, place, false, probe);
-            continue;
+            reach_back(samples, sample, block->square[lane], place, probe);
+        } else {
+            simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
+            if (!is_along(&samples->items[sample], normal))
+                probe->turned |= faces_away(samples, look_back(samples, sample, place, probe), normal);
         }
-        simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
-        if (!is_along(&samples->items[sample], normal))
-            probe->turned |= faces_away(samples, look_back(samples, sample, place, true, probe), normal);
+        probe->cut = (probe->refuses && probe->back > probe->plenty) || (probe->gain > 0 && probe->turned);
     }
     return HEWN_OK;
-}
-
-uint32_t hewn_simplify_probe_turns(const simplify_work *work, const simplify_probe *probe)
-{
-    const simplify_samples *samples = work->samples;
-    uint32_t turned = 0;
-    for (size_t i = 0; i < probe->mark_count; i++) {
-        const simplify_mark_block *block = &probe->blocks[i / SIMPLIFY_FOUR];
-        const uint32_t lane = i % SIMPLIFY_FOUR, f = probe->marks[i].face;
-        const uint32_t sample = probe->points[block->nearest[lane]].sample;
-        double place[3], normal[3], distance;
-        if (probe->marks[i].kind != MARK_MIDDLE)
-            continue;
-        simplify_fan_vector(block->at[0], lane, place);
-        for (int axis = 0; axis < 3; axis++)
-            place[axis] += probe->place[axis];
-        simplify_fan_vector(probe->fan.blocks[f / SIMPLIFY_FOUR].across[3][0], f % SIMPLIFY_FOUR, normal);
-        const uint32_t near =
-            hewn_bvh_nearest(&samples->bvh, &samples->input, place, samples->faces[samples->rings[sample]], &distance);
-        turned += faces_away(samples, near, normal);
-    }
-    return turned;
 }
 
 static hewn_result place_all(const simplify_work *work, const double at[3], simplify_probe *probe)
 {
     const simplify_samples *samples = work->samples;
+    probe->cut = probe->fan.count == 0 && probe->gain > 0;
     if (probe->fan.count == 0)
         return HEWN_OK;
     HEWN_TRY(hewn_simplify_fan_settle(&probe->fan));
     for (int i = 0; i < 2; i++) /* what has most to lose first */
         if (probe->cleared[i] != HEWN_NONE)
-            HEWN_TRY(take_samples(samples, probe->cleared[i], at, probe));
+            HEWN_TRY(take_samples(samples, probe->cleared[i], SIMPLIFY_NOWHERE, at, probe));
     place_samples(samples, 0, probe);
     size_t placed = probe->point_count;
     for (uint32_t f = 0; f < probe->fan.count && !probe->cut; f++) {
-        HEWN_TRY(take_samples(samples, face_of(probe, f), at, probe));
+        HEWN_TRY(take_samples(samples, face_of(probe, f), f, at, probe));
         if (f + 1 < probe->fan.count && probe->point_count - placed < AT_ONCE)
             continue;
         place_samples(samples, placed, probe);
         placed = probe->point_count;
     }
+    probe->cut |= probe->gain > 0 && !(probe->after < probe->gain * probe->before);
     if (probe->point_count == 0 || probe->cut)
         return HEWN_OK;
     return look_at_marks(samples, at, probe);
@@ -325,9 +306,33 @@ hewn_result hewn_simplify_probe_swap(const simplify_work *work, uint32_t h, simp
     return place_all(work, at, probe);
 }
 
-void hewn_simplify_probe_settle(const simplify_work *work, const simplify_probe *probe)
+hewn_result hewn_simplify_probe_split(const simplify_work *work, const simplify_split *split, simplify_probe *probe)
+{
+    const uint32_t h = split->half, t = work->twin[h];
+    const uint32_t corners[4] = {work->tail[h], work->tail[simplify_prev(t)], work->tail[t],
+                                 work->tail[simplify_prev(h)]}; /* a, d, b, c */
+    const uint32_t faces[4] = {t / 3, split->faces[1], split->faces[0], h / 3};
+    const double *at = work->samples->items[split->sample].at;
+    double towards[4][3];
+    begin(probe);
+    for (int k = 0; k < 4; k++)
+        simplify_between(at, simplify_at(work, corners[k]), towards[k]);
+    for (int k = 0; k < 4; k++)
+        HEWN_TRY(hewn_simplify_fan_add(&probe->fan, faces[k], towards[k], towards[(k + 1) % 4]));
+    return place_all(work, at, probe);
+}
+
+static void place_deferred(simplify_probe *probe)
+{
+    for (size_t i = 0; i < probe->point_count; i++)
+        probe->points[i].near = probe->points[i].near == deferred ? SIMPLIFY_NOWHERE : probe->points[i].near;
+    hewn_simplify_fan_nearest(&probe->fan, probe->points, probe->point_count);
+}
+
+void hewn_simplify_probe_settle(const simplify_work *work, simplify_probe *probe)
 {
     simplify_samples *samples = work->samples;
+    place_deferred(probe);
     for (uint32_t f = 0; f < probe->fan.count; f++)
         samples->first[face_of(probe, f)] = HEWN_NONE;
     for (int i = 0; i < 2; i++)

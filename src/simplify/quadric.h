@@ -52,6 +52,16 @@ static inline void simplify_quadric_add(simplify_quadric *q, const simplify_quad
     q->weight += other->weight;
 }
 
+static inline void simplify_quadric_sum(const simplify_quadric *p, const simplify_quadric *q, simplify_quadric *sum)
+{
+    for (int i = 0; i < 6; i++)
+        sum->a[i] = p->a[i] + q->a[i];
+    for (int i = 0; i < 3; i++)
+        sum->b[i] = p->b[i] + q->b[i];
+    sum->c = p->c + q->c;
+    sum->weight = p->weight + q->weight;
+}
+
 /* Half the gradient. */
 static inline void simplify_quadric_slope(const simplify_quadric *q, const double x[3], double out[3])
 {

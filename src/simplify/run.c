@@ -20,9 +20,6 @@ static uint32_t part_of(const simplify_work *work)
  * left to make. */
 static const float slim_factor = 100;
 
-/* And one that turns a triangle away from the input. */
-static const double turned_factor = 1000;
-
 /* Costs grow while edges go: the last ones to go cost about the square of how many times the triangles are to be less,
  * times what as many edges cost less than now. Limits of rounds are somewhat less than that; where more rounds with
  * samples follow, which edges go before others matters less than how many rounds there are. */
@@ -85,7 +82,7 @@ static float price_of(const simplify_work *work, uint32_t name, const simplify_p
 {
     const double far = fmax(probe->most, probe->back) / work->samples->aim;
     const double cost = fmax((double)work->key[name], work->samples->price * (far * far) * (far * far));
-    return (float)fmin(probe->turned ? turned_factor * cost : cost, FLT_MAX);
+    return (float)fmin(probe->turned ? work->samples->turned_factor * cost : cost, FLT_MAX);
 }
 
 /* The distance that has a price. */
@@ -101,8 +98,8 @@ static bool grows_dear(edge_front *front, uint32_t name)
     const float cost = price_of(work, name, &front->probe), before = work->key[name];
     work->flags[name] |= front->probe.cut ? 0 : SIMPLIFY_PROBED;
     work->key[name] = fmaxf(before, cost);
-    return cost > before &&
-           (cost > front->limit || (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0]));
+    return cost > before && (cost > front->limit || (!simplify_queue_is_empty(&front->queue) &&
+                                                     simplify_item(cost, name) > simplify_queue_head(&front->queue)));
 }
 
 /* An edge that is about to collapse: whether that turns a triangle away from what is nearest in all of the input, which
@@ -113,9 +110,10 @@ static bool turns_away(edge_front *front, uint32_t name)
     if (!work->samples->strict || work->flags[name] & SIMPLIFY_STRICT)
         return false;
     work->flags[name] |= SIMPLIFY_STRICT;
-    if (front->probe.turned > 0 || hewn_simplify_probe_turns(work, &front->probe) == 0)
+    if (front->probe.turned > 0 || hewn_simplify_probe_turns(work, &front->probe, 0) == 0)
         return false;
-    work->key[name] = (float)fmin(turned_factor * fmax((double)work->key[name], work->samples->price), FLT_MAX);
+    work->key[name] =
+        (float)fmin(work->samples->turned_factor * fmax((double)work->key[name], work->samples->price), FLT_MAX);
     return true;
 }
 
@@ -130,7 +128,8 @@ static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool
     if (!work->samples)
         return HEWN_OK;
     const bool priced = tied || work->flags[name] & SIMPLIFY_PROBED;
-    const float next = front->queue.count > 0 ? simplify_item_cost(front->queue.items[0]) : FLT_MAX;
+    const float next =
+        simplify_queue_is_empty(&front->queue) ? FLT_MAX : simplify_item_cost(simplify_queue_head(&front->queue));
     front->probe.enough = reach_of(work, work->key[name]);
     front->probe.plenty = priced ? INFINITY : 1.01 * reach_of(work, fminf(next, front->limit));
     const uint32_t count = hewn_simplify_sides(work, plan, sides);
@@ -162,9 +161,8 @@ static hewn_result probe_plan(edge_front *front, const simplify_plan *plan, bool
 static hewn_result step(edge_front *front)
 {
     simplify_work *work = front->work;
-    const uint64_t item = front->queue.items[0];
+    const uint64_t item = simplify_queue_take(&front->queue);
     const uint32_t name = (uint32_t)item;
-    simplify_queue_pop(&front->queue);
     if (!is_current(work, item))
         return HEWN_OK;
     simplify_plan plan = hewn_simplify_plan(work, name);
@@ -175,7 +173,7 @@ static hewn_result step(edge_front *front)
         work->flags[name] = (uint8_t)((work->flags[name] & ~SIMPLIFY_RAISED) | SIMPLIFY_FRESH);
         if (cost > front->limit || isinf(cost))
             return HEWN_OK;
-        if (front->queue.count > 0 && simplify_item(cost, name) > front->queue.items[0])
+        if (!simplify_queue_is_empty(&front->queue) && simplify_item(cost, name) > simplify_queue_head(&front->queue))
             return enqueue(front, name);
     }
     if (plan.far || !hewn_simplify_allowed(work, &plan))
@@ -204,7 +202,7 @@ static hewn_result step(edge_front *front)
 static hewn_result drain(edge_front *front)
 {
     simplify_queue_settle(&front->queue);
-    while (front->queue.count > 0 && front->removed < front->budget)
+    while (!simplify_queue_is_empty(&front->queue) && front->removed < front->budget)
         HEWN_TRY(step(front));
     return HEWN_OK;
 }
@@ -293,6 +291,7 @@ static hewn_result run_part(const part_list *parts, uint32_t p, edge_front *fron
     hewn_result result = hewn_reserve((void **)&front->queue.items, &front->queue.capacity, parts->edges[p] + 1,
                                       sizeof *front->queue.items, NULL);
     front->queue.count = 0;
+    front->queue.hollow = false;
     front->removed = 0;
     if (result != HEWN_OK)
         return result;
@@ -414,6 +413,7 @@ static bool set_aim(simplify_work *work, uint32_t target)
 hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, bool early, hewn_error *error)
 {
     const uint32_t began = work->live_faces;
+    bool ordered = true; /* as by round 0, which sorting again does not change */
     float limit = 0;
     if (work->samples && target < began && !set_aim(work, target))
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
@@ -422,19 +422,22 @@ hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, bool early, 
         HEWN_TRY(hewn_progress_report(work->desc->progress, "simplify",
                                       work->progress_begin + (work->progress_end - work->progress_begin) * done,
                                       error));
-        HEWN_TRY(hewn_simplify_order(work, round, error));
+        if (round > 0)
+            HEWN_TRY(hewn_simplify_order(work, round, error));
         if (work->vertex_count <= 2 * part_of(work) || (work->live_faces - target) < began / 50)
             break;
         uint32_t removed = 0, wanted = work->live_faces - target;
+        ordered = false;
         if (run_round(work, target, early, &limit, &removed) != HEWN_OK)
             return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
         if (removed < wanted / 10)
             break;
     }
     if (work->live_faces > target) {
-        HEWN_TRY(hewn_simplify_order(work, 0, error));
+        if (!ordered)
+            HEWN_TRY(hewn_simplify_order(work, 0, error));
         if (finish(work, target) != HEWN_OK)
             return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     }
-    return hewn_simplify_order(work, 0, error);
+    return work->live_faces < began ? hewn_simplify_order(work, 0, error) : HEWN_OK;
 }

@@ -20,6 +20,7 @@ void hewn_simplify_samples_release(simplify_samples *samples)
     hewn_free(samples->rings);
     hewn_free(samples->faces);
     hewn_bvh_free(&samples->bvh);
+    hewn_facing_free(&samples->facing);
     *samples = (simplify_samples){0};
 }
 
@@ -241,6 +242,7 @@ static hewn_result make(sampling *job, hewn_error *error)
     if (!along)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     HEWN_TRY(hewn_bvh_build_along(&job->out->input, along, &job->out->bvh, error));
+    HEWN_TRY(hewn_facing_build(&job->out->bvh, &job->out->input, &job->out->facing, error));
     find_faces(job);
     HEWN_TRY(order_samples(job, count, error));
     fill(job);

@@ -1,5 +1,7 @@
 #include "simplify/swap.h"
 
+#include "simplify/across.h"
+
 /* Cosines between a triangle's normal and the mean of both before, and the shape below which it is a sliver. */
 static const double least_cosine = 0.5, least_shape = 0.02;
 
@@ -90,44 +92,17 @@ bool hewn_simplify_may_swap(const simplify_work *work, uint32_t h)
 
 /* --- doing it ----------------------------------------------------------------------------------------------------- */
 
-/* What is across one side of the two triangles, and what is known of that side. */
-typedef struct swap_side {
-    uint32_t twin, wedge;
-    float key;
-    uint8_t flags;
-} swap_side;
-
-static swap_side take_side(const simplify_work *work, uint32_t h)
-{
-    const uint32_t name = simplify_name(work, h);
-    return (swap_side){work->twin[h], work->wedge ? work->wedge[h] : 0, work->key[name], work->flags[name]};
-}
-
-/* Half-edge `h` leaves `tail` now and is that side. */
-static void give_side(simplify_work *work, uint32_t h, uint32_t tail, const swap_side *side)
-{
-    work->tail[h] = tail;
-    work->twin[h] = side->twin;
-    if (side->twin != HEWN_NONE)
-        work->twin[side->twin] = h;
-    if (work->wedge)
-        work->wedge[h] = side->wedge;
-    const uint32_t name = simplify_name(work, h);
-    work->key[name] = side->key;
-    work->flags[name] = side->flags;
-}
-
 void hewn_simplify_swap(simplify_work *work, uint32_t h)
 {
     const uint32_t t = work->twin[h], hn = simplify_next(h), hp = simplify_prev(h), tn = simplify_next(t),
                    tp = simplify_prev(t);
     const swap_corners at = corners_of(work, h);
-    const swap_side bc = take_side(work, hn), ca = take_side(work, hp), ad = take_side(work, tn),
-                    db = take_side(work, tp);
-    give_side(work, hn, at.c, &ca);
-    give_side(work, hp, at.a, &ad);
-    give_side(work, tn, at.d, &db);
-    give_side(work, tp, at.b, &bc);
+    const simplify_across bc = simplify_across_take(work, hn), ca = simplify_across_take(work, hp),
+                          ad = simplify_across_take(work, tn), db = simplify_across_take(work, tp);
+    simplify_across_give(work, hn, at.c, &ca);
+    simplify_across_give(work, hp, at.a, &ad);
+    simplify_across_give(work, tn, at.d, &db);
+    simplify_across_give(work, tp, at.b, &bc);
     work->tail[h] = at.d;
     work->tail[t] = at.c;
     if (work->wedge) {

@@ -134,6 +134,9 @@ void hewn_simplify_release(simplify_work *work);
  * released as well. */
 hewn_result hewn_simplify_copy(const simplify_work *work, simplify_work *out, hewn_error *error);
 
+/* Makes room for more, free as if removed. Not with attributes, not of a complex. HEWN_OUT_OF_MEMORY. */
+hewn_result hewn_simplify_grow(simplify_work *work, uint32_t vertices, uint32_t faces, hewn_error *error);
+
 /* Marks features and ranks vertices. */
 hewn_result hewn_simplify_mark(simplify_work *work, hewn_error *error);
 
@@ -144,8 +147,8 @@ hewn_result hewn_simplify_weigh(simplify_work *work, hewn_error *error);
  * curve through cubes that lie elsewhere for each `round`; removed ones are dropped. HEWN_OUT_OF_MEMORY. */
 hewn_result hewn_simplify_order(simplify_work *work, uint32_t round, hewn_error *error);
 
-/* Collapses edges until `target` triangles are left, or none may be collapsed any more. `early`: another run follows.
- */
+/* Collapses edges until `target` triangles are left, or none may be collapsed any more. `work` is in the order of round
+ * 0, and is so afterwards. `early`: another run follows. */
 hewn_result hewn_simplify_run(simplify_work *work, uint32_t target, bool early, hewn_error *error);
 
 #endif

@@ -1,6 +1,7 @@
 /* Simplification: what the last collapses do for the greatest distance, for the mean one, and for what faces away. */
 #include <omp.h>
 
+#include "hewn/check.h"
 #include "hewn/distance.h"
 #include "hewn/simplify.h"
 #include "test_smooth_support.h"
@@ -132,23 +133,41 @@ static hewn_model make_tilted(uint32_t n)
     return model;
 }
 
+/* Without the triangles around some vertices, far from each other. */
+static hewn_model make_pierced(uint32_t n, uint32_t holes)
+{
+    hewn_model ball = make_bumpy(n, 0.2, 3), out;
+    uint64_t faces = 0;
+    const uint64_t step = ball.vertex_count / holes;
+    out = make_model(ball.vertex_count, ball.face_count, 3 * ball.face_count, false);
+    memcpy(out.positions, ball.positions, 3 * ball.vertex_count * sizeof *out.positions);
+    for (uint64_t f = 0; f < ball.face_count; f++) {
+        const uint32_t *corner = ball.corners + 3 * f;
+        if (corner[0] % step == step / 2 || corner[1] % step == step / 2 || corner[2] % step == step / 2)
+            continue;
+        memcpy(out.corners + 3 * faces++, corner, 3 * sizeof *corner);
+    }
+    out.face_count = faces;
+    hewn_model_destroy(&ball);
+    return out;
+}
+
 /* --- tests -------------------------------------------------------------------------------------------------------- */
 
 /* Walls thinner than triangles stand off: what is nearest is often the other side. Collapses alone leave three to ten
- * times as many. */
+ * times as many as were left when there was one way where triangles are many: 8, 3 and 3 of the last. */
 static void test_thin_walls_face_their_own_side(void **state)
 {
     (void)state;
     static const struct {
         double thickness;
         uint64_t faces;
-        int most;
-    } cases[] = {{0.03, 300, 0}, {0.02, 450, 12}, {0.015, 600, 8}, {0.01, 1000, 6}};
+    } cases[] = {{0.03, 300}, {0.02, 450}, {0.015, 600}, {0.01, 1000}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         hewn_model skin = make_skin(30, cases[i].thickness);
         hewn_model out = simplify(&skin, cases[i].faces);
         assert_true(out.face_count <= cases[i].faces);
-        assert_true(count_turned(&skin, &out) <= cases[i].most);
+        assert_int_equal(count_turned(&skin, &out), 0);
         hewn_model_destroy(&skin);
         hewn_model_destroy(&out);
     }
@@ -212,12 +231,74 @@ static void test_same_bytes_of_attempts(void **state)
     hewn_model_destroy(&model);
 }
 
+/* Few triangles go where they are needed. When none were exchanged and distances back to the input did not count, the
+ * sum of the mean distances was 0.339, that of the greatest 1.73. */
+static void test_few_triangles_are_where_they_are_needed(void **state)
+{
+    (void)state;
+    double mean = 0, most = 0;
+    for (uint64_t faces = 90; faces <= 135; faces += 45)
+        for (int i = 0; i < 6; i++) {
+            hewn_model ball = make_bumpy(40, 0.15 + 0.05 * i, 3 + i);
+            hewn_model out = simplify(&ball, faces);
+            assert_true(out.face_count <= faces);
+            mean += mean_distance(&ball, &out);
+            most += distance_between(&ball, &out);
+            hewn_model_destroy(&ball);
+            hewn_model_destroy(&out);
+        }
+    assert_true(mean < 0.3345);
+    assert_true(most < 1.70);
+}
+
+static void assert_same_topology(const hewn_model *a, const hewn_model *b)
+{
+    const hewn_model *both[2] = {a, b};
+    hewn_check *found[2];
+    for (int i = 0; i < 2; i++) {
+        hewn_error error = {0};
+        const hewn_polygons polygons = hewn_model_polygons(both[i]);
+        if (hewn_check_polygons(&polygons, &(hewn_check_desc){.skip_self_intersections = true}, &found[i], &error) !=
+            HEWN_OK)
+            fail_msg("%s", error.message);
+        assert_true(found[i]->certificate.manifold && found[i]->certificate.oriented);
+    }
+    assert_int_equal(found[0]->component_count, found[1]->component_count);
+    assert_int_equal(found[0]->boundary_loops, found[1]->boundary_loops);
+    assert_int_equal(found[0]->euler, found[1]->euler);
+    hewn_check_destroy(&found[0]);
+    hewn_check_destroy(&found[1]);
+}
+
+/* Holes take more triangles than are asked for: what is left keeps the shape. When samples were looked at from four
+ * times the number that was asked for on, the sum of the mean distances was 0.67, that of the greatest 2.1. */
+static void test_more_topology_than_triangles(void **state)
+{
+    (void)state;
+    double mean = 0, most = 0;
+    for (uint32_t holes = 5; holes < 40; holes *= 2) {
+        hewn_model ball = make_pierced(30, holes);
+        hewn_model out = simplify(&ball, holes);
+        assert_true(out.face_count <= 7 * holes);
+        assert_int_equal(count_turned(&ball, &out), 0);
+        assert_same_topology(&ball, &out);
+        mean += mean_distance(&ball, &out);
+        most += distance_between(&ball, &out);
+        hewn_model_destroy(&ball);
+        hewn_model_destroy(&out);
+    }
+    assert_true(mean < 0.4);
+    assert_true(most < 1.6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_thin_walls_face_their_own_side),
         cmocka_unit_test(test_no_place_is_left_far_away),
         cmocka_unit_test(test_tilted_planes_stay),
+        cmocka_unit_test(test_few_triangles_are_where_they_are_needed),
+        cmocka_unit_test(test_more_topology_than_triangles),
         cmocka_unit_test(test_same_bytes_of_attempts),
     };
     return cmocka_run_group_tests_name("simplify balance", tests, NULL, NULL);
