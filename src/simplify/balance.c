@@ -59,8 +59,8 @@ typedef struct balance_attempt {
     simplify_work work;
     simplify_samples samples;
     hewn_simplify_desc desc;
-    uint32_t turned; /* triangles that face away */
     double score;
+    uint32_t turned; /* triangles that face away */
     hewn_result result;
 } balance_attempt;
 

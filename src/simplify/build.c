@@ -320,7 +320,7 @@ hewn_result hewn_simplify_grow(simplify_work *work, uint32_t vertices, uint32_t 
     grow((void **)&work->face_origins, all, sizeof *work->face_origins, &failed);
     if (work->samples)
         grow((void **)&work->samples->first, all, sizeof *work->samples->first, &failed);
-    if (failed)
+    if (failed || !work->half || !work->tail || !work->twin)
         return hewn_fail(error, HEWN_OUT_OF_MEMORY, "out of memory simplifying");
     for (size_t v = work->vertex_count; v < verts; v++)
         work->half[v] = SIMPLIFY_GONE;

@@ -400,7 +400,7 @@ static hewn_node read_vm(hewn_field *field, char *text)
 static void prospero_compiles(void **test_state)
 {
     fixture *state = *test_state;
-    char path[8192], *text;
+    char path[8192], *text = NULL;
     size_t length;
     if (!data_file(path, "implicit/prospero.vm") ||
         hewn_file_read(path, (size_t)1 << 24, &text, &length, NULL) != HEWN_OK) {
