@@ -52,7 +52,8 @@ static void test_cancel_in_parts(void **state)
     static const struct {
         const char *stage;
         int signal;
-    } cases[] = {{"count", SIGTERM}, {"extract", SIGINT}, {"extract", SIGTERM}, {"write", SIGTERM}};
+        double later; /* seconds from when the stage was told */
+    } cases[] = {{"count", SIGTERM, 0}, {"extract", SIGINT, 0}, {"extract", SIGTERM, 0.2}, {"write", SIGTERM, 0}};
     char *folder = run_folder_create();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         run_desc desc = {.arguments = {"mesh", menger(), "-o", "a.obj", "--res", "300", "--max-memory", "64M"},
@@ -61,7 +62,7 @@ static void test_cancel_in_parts(void **state)
                          .terminal = true};
         run_process process = run_start(&desc);
         run_await(&process, cases[i].stage);
-        run_sleep(0.1 * (double)i);
+        run_sleep(cases[i].later);
         kill(process.id, cases[i].signal);
         assert_cancelled(&process, folder, 0);
     }
