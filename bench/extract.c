@@ -32,13 +32,11 @@ typedef struct contest {
     bool alone;               /* peers would take minutes, or 34 GB */
 } contest;
 
-enum { CONTESTS = 11 };
-
 static const hewn_scene_setting level_four[] = {{"L", 4}};
 static const hewn_scene_setting hundred[] = {{"n", 100}}, thousand[] = {{"n", 1000}}, myriad[] = {{"n", 10000}},
                                 few[] = {{"n", 25}}, some[] = {{"n", 50}};
 
-static const contest contests[CONTESTS] = {
+static const contest contests[] = {
     {"csg", "csg.lua", NULL, 0, &dense_csg, 512, false},
     {"gyroid", "gyroid.lua", NULL, 0, &dense_gyroid, 512, false},
     {"menger", "menger.lua", level_four, 1, &dense_menger4, 512, false},
@@ -51,6 +49,8 @@ static const contest contests[CONTESTS] = {
     {"csg1024", "csg.lua", NULL, 0, NULL, 1024, true},
     {"csg2048", "csg.lua", NULL, 0, NULL, 2048, true},
 };
+
+enum { CONTESTS = sizeof contests / sizeof *contests };
 
 typedef struct outcome {
     double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];

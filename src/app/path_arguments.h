@@ -21,7 +21,7 @@ hewn_result hewn_output_argument_read(const hewn_arguments *arguments, const cha
 hewn_result hewn_mesh_output_read(const hewn_arguments *arguments, const char **output, const char **report,
                                   hewn_mesh_format *format, hewn_error *error);
 
-/* HEWN_INVALID_ARGUMENT where `output` is "-" and that is a terminal; `what` is binary: "PNG is". */
+/* HEWN_INVALID_ARGUMENT where `output` is "-" and that is a terminal, for what is binary; `what` is its name. */
 hewn_result hewn_output_spare_terminal(const char *output, const char *what, hewn_error *error);
 
 #endif

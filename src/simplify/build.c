@@ -305,7 +305,7 @@ static void grow(void **array, size_t count, size_t size, bool *failed)
 hewn_result hewn_simplify_grow(simplify_work *work, uint32_t vertices, uint32_t faces, hewn_error *error)
 {
     const size_t verts = (size_t)work->vertex_count + vertices, all = (size_t)work->face_count + faces;
-    bool failed = work->groups || work->wedge;
+    bool failed = false;
     grow((void **)&work->positions, 3 * verts, sizeof *work->positions, &failed);
     grow((void **)&work->quadrics, verts, sizeof *work->quadrics, &failed);
     grow((void **)&work->facing, 3 * verts, sizeof *work->facing, &failed);

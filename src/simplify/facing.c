@@ -1,13 +1,6 @@
 #include "geom/nearest.h"
 #include "simplify/probe_mark.h"
 
-static void normal_of(const simplify_samples *samples, uint32_t face, double out[3])
-{
-    const uint32_t *corner = samples->input.corners + 3 * (size_t)face;
-    simplify_area_vector(samples->positions + 3 * (size_t)corner[0], samples->positions + 3 * (size_t)corner[1],
-                         samples->positions + 3 * (size_t)corner[2], out);
-}
-
 /* Whether the place nearest to a point is within a triangle that is `distance` away: else others meet there. */
 static bool is_within(const simplify_samples *samples, uint32_t face, const double n[3], const double at[3],
                       double distance)
@@ -33,7 +26,7 @@ static bool any_faces_away(const simplify_samples *samples, const double at[3], 
         for (uint64_t slot = 4 * block; slot < 4 * block + 4; slot++) {
             const uint32_t face = samples->bvh.order[slot];
             double n[3];
-            normal_of(samples, face, n);
+            hewn_triangle_normal(&samples->input, face, n);
             if (simplify_dot(normal, n) < 0 && hewn_view_reach(&samples->input, face, at) <= reach)
                 return true;
         }
@@ -49,7 +42,7 @@ static int faces_away(const simplify_samples *samples, const double at[3], const
     if (side != HEWN_SIDE_UNSURE) /* mostly all that are near face alike */
         return side == HEWN_SIDE_AWAY ? 2 : 0;
     const uint32_t near = hewn_bvh_nearest(&samples->bvh, &samples->input, at, guess, &distance);
-    normal_of(samples, near, n);
+    hewn_triangle_normal(&samples->input, near, n);
     if (simplify_dot(normal, n) < 0)
         return 2;
     return !is_within(samples, near, n, at, distance) && any_faces_away(samples, at, normal, distance);

@@ -103,10 +103,8 @@ static double pull_back(const fitting *job, const double to[3], const double b[3
         sum += weight * distance * distance;
         if (!q)
             continue;
-        const uint32_t *corner = samples->input.corners + 3 * (size_t)*near;
-        const double *from = samples->positions + 3 * (size_t)corner[0];
-        simplify_area_vector(from, samples->positions + 3 * (size_t)corner[1],
-                             samples->positions + 3 * (size_t)corner[2], m);
+        const double *from = samples->positions + 3 * (size_t)samples->input.corners[3 * (size_t)*near];
+        hewn_triangle_normal(&samples->input, *near, m);
         const double square = simplify_dot(m, m), share = points[i][0];
         if (!(square > 0))
             continue;
