@@ -414,21 +414,59 @@ precise float f_affine(const float a, const float b, const float c, const float 
     return sum;
 }
 
-//: sphere length
-precise float f_sphere(const float a, const float b, const float c, const float radius)
+//: radicand length
+/* A distance before its last two steps, a root and an addition: a walk over a list selects among kinds of shapes here,
+ * and takes one root for all of them. */
+struct f_radicand {
+    float square, rest;
+};
+
+precise float f_rooted(const f_radicand of)
 {
-    precise float r = f_length(a, b, c) - radius;
-    return r;
+    precise float d = sqrt(of.square) + of.rest;
+    return d;
 }
 
-//: box length
-precise float f_box(const float a, const float b, const float c, const float p, const float q, const float r)
+precise f_radicand f_radicand_of(const float a, const float b, const float rest)
+{
+    precise f_radicand of;
+    of.square = a * a + b * b;
+    of.rest = rest;
+    return of;
+}
+
+precise f_radicand f_radicand_of(const float a, const float b, const float c, const float rest)
+{
+    precise f_radicand of;
+    of.square = a * a + b * b + c * c;
+    of.rest = rest;
+    return of;
+}
+
+//: sphere radicand
+f_radicand f_sphere_radicand(const float a, const float b, const float c, const float radius)
+{
+    return f_radicand_of(a, b, c, -radius);
+}
+
+float f_sphere(const float a, const float b, const float c, const float radius)
+{
+    return f_rooted(f_sphere_radicand(a, b, c, radius));
+}
+
+//: box radicand
+precise f_radicand f_box_radicand(const float a, const float b, const float c, const float p, const float q,
+                                  const float r)
 {
     precise float x = abs(a) - p, y = abs(b) - q, z = abs(c) - r;
     float most = f_pick(y > x, y, x);
     most = f_pick(z > most, z, most);
-    precise float d = f_length(f_positive(x), f_positive(y), f_positive(z)) + f_pick(most > 0.0, 0.0, most);
-    return d;
+    return f_radicand_of(f_positive(x), f_positive(y), f_positive(z), f_pick(most > 0.0, 0.0, most));
+}
+
+float f_box(const float a, const float b, const float c, const float p, const float q, const float r)
+{
+    return f_rooted(f_box_radicand(a, b, c, p, q, r));
 }
 
 //: rounded_box box
@@ -439,35 +477,55 @@ precise float f_rounded_box(const float a, const float b, const float c, const f
     return d;
 }
 
-//: torus length
-precise float f_torus(const float a, const float b, const float c, const float major, const float minor)
+//: torus radicand
+precise f_radicand f_torus_radicand(const float a, const float b, const float c, const float major, const float minor)
 {
-    precise float d = f_length(f_length(a, c) - major, b) - minor;
-    return d;
+    precise float around = f_length(a, c) - major;
+    return f_radicand_of(around, b, -minor);
 }
 
-//: profile length
+float f_torus(const float a, const float b, const float c, const float major, const float minor)
+{
+    return f_rooted(f_torus_radicand(a, b, c, major, minor));
+}
+
+//: profile radicand
 /* Inside a corner the larger of two distances, outside it the length of what is positive of both. */
-precise float f_corner(const float x, const float y)
+f_radicand f_corner_radicand(const float x, const float y)
 {
     float most = f_pick(y > x, y, x);
-    precise float d = f_length(f_positive(x), f_positive(y)) + f_pick(most > 0.0, 0.0, most);
-    return d;
+    return f_radicand_of(f_positive(x), f_positive(y), f_pick(most > 0.0, 0.0, most));
+}
+
+float f_corner(const float x, const float y)
+{
+    return f_rooted(f_corner_radicand(x, y));
 }
 
 //: cylinder profile
-precise float f_cylinder(const float a, const float b, const float c, const float radius, const float half_height)
+precise f_radicand f_cylinder_radicand(const float a, const float b, const float c, const float radius,
+                                       const float half_height)
 {
     precise float x = f_length(a, c) - radius, y = abs(b) - half_height;
-    return f_corner(x, y);
+    return f_corner_radicand(x, y);
 }
 
-//: capsule length
-precise float f_capsule(const float a, const float b, const float c, const float radius, const float half_height)
+float f_cylinder(const float a, const float b, const float c, const float radius, const float half_height)
+{
+    return f_rooted(f_cylinder_radicand(a, b, c, radius, half_height));
+}
+
+//: capsule radicand
+precise f_radicand f_capsule_radicand(const float a, const float b, const float c, const float radius,
+                                      const float half_height)
 {
     precise float y = abs(b) - half_height;
-    precise float d = f_length(a, f_positive(y), c) - radius;
-    return d;
+    return f_radicand_of(a, f_positive(y), c, -radius);
+}
+
+float f_capsule(const float a, const float b, const float c, const float radius, const float half_height)
+{
+    return f_rooted(f_capsule_radicand(a, b, c, radius, half_height));
 }
 
 //: cone length

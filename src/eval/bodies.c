@@ -108,6 +108,7 @@ typedef struct body_writer {
     float *numbers;
     uint32_t number_count, written;
     bool centred;
+    const hewn_code_step *rooted; /* the last step, where as a point it is left under its root */
 } body_writer;
 
 /* Points, intervals, gradients, and what is written beside intervals: the point in the middle of the box. */
@@ -164,8 +165,10 @@ static void write_call(const body_writer *writer, const hewn_code_step *step, co
 {
     hewn_text *text = &writer->texts[flavour == MIDDLE ? INTERVAL : flavour];
     bool guard = flavour == INTERVAL && hewn_listing_needs_guard(writer->listing, step);
-    hewn_text_print(text, "%s %s%u=%sf_%s(", body_types[flavour], flavour == MIDDLE ? "m" : "n", made,
-                    guard ? "f_guard(" : "", step->function);
+    bool rooted = flavour == POINT && step == writer->rooted;
+    hewn_text_print(text, "%s %s%u=%sf_%s%s(", rooted ? "f_radicand" : body_types[flavour],
+                    flavour == MIDDLE ? "m" : "n", made, guard ? "f_guard(" : "", step->function,
+                    rooted ? "_radicand" : "");
     for (uint32_t k = 0; k < step->in_count; k++)
         hewn_text_print(text, "%s%s", k ? "," : "",
                         hewn_listing_is_plain(writer->listing, step, k) ? operands[k].bare
@@ -276,6 +279,13 @@ static bool slope_numbers(const hewn_listing *listing, const hewn_code_step *ste
     return turned && numbers[0] < 1e15f && numbers[1] < 1e15f && numbers[2] < 1e15f;
 }
 
+/* Shapes whose distance ends with a root and one addition: the library has them without these, too. */
+static bool ends_with_root(hewn_op op)
+{
+    return op == HEWN_OP_SPHERE || op == HEWN_OP_BOX || op == HEWN_OP_TORUS || op == HEWN_OP_CYLINDER ||
+           op == HEWN_OP_CAPSULE;
+}
+
 uint32_t hewn_body_weight(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step)
 {
     const hewn_code_step *own = &listing->steps[step];
@@ -296,7 +306,8 @@ void hewn_body_write(const hewn_listing *listing, const hewn_gathering *gathered
                           .body = &gathered[step],
                           .texts = texts,
                           .numbers = numbers,
-                          .centred = centred};
+                          .centred = centred,
+                          .rooted = ends_with_root(listing->steps[step].op) ? &listing->steps[step] : NULL};
     if (centred)
         hewn_text_append(&texts[INTERVAL], "vec3 middle=f_middle(x,y,z);\n");
     value_name result = write_value(&writer, step);
@@ -308,6 +319,8 @@ void hewn_body_write(const hewn_listing *listing, const hewn_gathering *gathered
             numbers[writer.number_count++] = slope[i];
     }
     for (int flavour = 0; flavour < 3; flavour++)
-        hewn_text_print(&texts[flavour], "return %s;\n", result.whole[flavour]);
+        hewn_text_print(&texts[flavour],
+                        flavour == POINT && writer.rooted ? "return " HEWN_BODY_ROOT "%s);\n" : "return %s;\n",
+                        result.whole[flavour]);
     *number_count = writer.number_count;
 }

@@ -26,6 +26,9 @@ bool hewn_body_absorbable(const hewn_listing *listing, const hewn_gathering *gat
 
 uint32_t hewn_body_weight(const hewn_listing *listing, const hewn_gathering *gathered, uint32_t step);
 
+/* What stands before the result of a body that is given under a root, with what is added to that. */
+#define HEWN_BODY_ROOT "f_rooted("
+
 /* The body in three flavours (appended), and its numbers. Of a shape in a turned frame bounds are those about the
  * middle of the box, from how steep it can be at most: of intervals of turned coordinates no more would come, and at a
  * multiple of the cost. */

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "eval/instructions.h"
+#include "eval/bodies.h"
 
 extern const char hewn_text_keep_list[];
 
@@ -125,22 +125,59 @@ static size_t common_start(const walk *own)
     return end && (size_t)(end - first) < common ? (size_t)(end - first) : common;
 }
 
-/* The statements of a body after those in common, and its result into `r`. */
+/* What a body returns; where that is a root, what it is taken of. */
+static const char *find_result(const char *body, bool *rooted)
+{
+    const char *result = strstr(body, "return ") + strlen("return ");
+    *rooted = strncmp(result, HEWN_BODY_ROOT, strlen(HEWN_BODY_ROOT)) == 0;
+    return *rooted ? result + strlen(HEWN_BODY_ROOT) : result;
+}
+
+/* The statements of a body after those in common, and its result into `r` or `root`. */
 static void write_body(const walk *own, uint32_t i, size_t common)
 {
     const char *text = own->set->bodies[i].texts[own->flavour].bytes + (i ? common : 0);
-    const char *result = strstr(text, "return ");
-    bool masked = own->how->masked && !reads_samples(text);
+    bool rooted, masked = own->how->masked && !reads_samples(text);
+    const char *result = find_result(text, &rooted);
+    int length = (int)strcspn(result, rooted ? ")" : ";");
     if (!masked)
         hewn_text_print(own->text, "if(body==%uu)", i);
     hewn_text_append(own->text, "{\n");
-    hewn_text_append_bytes(own->text, text, (size_t)(result - text));
-    result += strlen("return ");
-    int length = (int)strcspn(result, ";");
-    if (masked)
-        hewn_text_print(own->text, "r=mix(r,%.*s,%s(body==%uu));\n}\n", length, result, own->bools, i);
+    hewn_text_append_bytes(own->text, text, (size_t)(strstr(text, "return ") - text));
+    if (!masked)
+        hewn_text_print(own->text, "%s=%.*s;\n}\n", rooted ? "root" : "r", length, result);
+    else if (rooted)
+        hewn_text_print(own->text,
+                        "root.square=mix(root.square,%.*s.square,body==%uu);\n"
+                        "root.rest=mix(root.rest,%.*s.rest,body==%uu);\n}\n",
+                        length, result, i, length, result, i);
     else
-        hewn_text_print(own->text, "r=%.*s;\n}\n", length, result);
+        hewn_text_print(own->text, "r=mix(r,%.*s,%s(body==%uu));\n}\n", length, result, own->bools, i);
+}
+
+static bool is_rooted(const walk *own, uint32_t i)
+{
+    bool rooted;
+    find_result(own->set->bodies[i].texts[own->flavour].bytes, &rooted);
+    return rooted;
+}
+
+static uint32_t count_rooted(const walk *own, uint32_t first)
+{
+    uint32_t rooted = 0;
+    for (uint32_t i = first; i < own->set->body_count; i++)
+        rooted += is_rooted(own, i);
+    return rooted;
+}
+
+/* Bodies that end with a root share one: where all arms run, each would take its own. */
+static void write_root(const walk *own, uint32_t first, bool always)
+{
+    hewn_text_append(own->text, always ? "r=f_rooted(root);\n" : "r=mix(r,f_rooted(root),false");
+    for (uint32_t i = first; !always && i < own->set->body_count; i++)
+        if (is_rooted(own, i))
+            hewn_text_print(own->text, "||body==%uu", i);
+    hewn_text_append(own->text, always ? "" : ");\n");
 }
 
 static void write_coordinates(const walk *own)
@@ -163,12 +200,16 @@ static void write_arms(const walk *own)
     write_coordinates(own);
     for (uint32_t i = 0; i < inputs; i++)
         write_read(own, (char)('b' + (int)i), 20 + 4 * i);
-    hewn_text_print(own->text, "%s r=%s;\n", own->type, zero(own));
+    uint32_t rooted = count_rooted(own, first);
+    hewn_text_print(own->text, "%s r=%s;\n%s", own->type, zero(own),
+                    rooted ? "f_radicand root=f_radicand(0.0,0.0);\n" : "");
     size_t common = common_start(own);
     if (common)
         hewn_text_append_bytes(own->text, set->bodies[1].texts[own->flavour].bytes, common);
     for (uint32_t i = first; i < set->body_count; i++)
         write_body(own, i, common);
+    if (rooted)
+        write_root(own, first, rooted == set->body_count - first);
 }
 
 static bool is_blend(hewn_op op)
