@@ -2,18 +2,28 @@
 
 #include <math.h>
 
+/* A field at one point, and beside it a row of samples in which what they share is computed once. */
+static inline float csg_at(float x, float y, float z)
+{
+    float sphere = sqrtf(x * x + y * y + z * z) - 0.8f;
+    float box = fmaxf(fmaxf(fabsf(x - 0.5f), fabsf(y - 0.5f)), fabsf(z - 0.5f)) - 0.45f;
+    float cut = fmaxf(sphere, -box);
+    float ring = sqrtf(x * x + y * y) - 0.7f;
+    float torus = sqrtf(ring * ring + (z + 0.35f) * (z + 0.35f)) - 0.15f;
+    float melt = fmaxf(0.2f - fabsf(cut - torus), 0.0f);
+    return fminf(cut, torus) - melt * melt / 0.8f;
+}
+
 static void csg_row(float x0, float step, size_t count, float y, float z, float *values)
 {
-    for (size_t i = 0; i < count; i++) {
-        float x = x0 + step * (float)i;
-        float sphere = sqrtf(x * x + y * y + z * z) - 0.8f;
-        float box = fmaxf(fmaxf(fabsf(x - 0.5f), fabsf(y - 0.5f)), fabsf(z - 0.5f)) - 0.45f;
-        float cut = fmaxf(sphere, -box);
-        float ring = sqrtf(x * x + y * y) - 0.7f;
-        float torus = sqrtf(ring * ring + (z + 0.35f) * (z + 0.35f)) - 0.15f;
-        float melt = fmaxf(0.2f - fabsf(cut - torus), 0.0f);
-        values[i] = fminf(cut, torus) - melt * melt / 0.8f;
-    }
+    for (size_t i = 0; i < count; i++)
+        values[i] = csg_at(x0 + step * (float)i, y, z);
+}
+
+static inline float gyroid_at(float x, float y, float z)
+{
+    float gyroid = sinf(12 * x) * cosf(12 * y) + sinf(12 * y) * cosf(12 * z) + sinf(12 * z) * cosf(12 * x);
+    return fmaxf(fabsf(gyroid) - 0.4f, sqrtf(x * x + y * y + z * z) - 0.9f);
 }
 
 static void gyroid_row(float x0, float step, size_t count, float y, float z, float *values)
@@ -57,18 +67,56 @@ static void menger_row(float x0, float step, size_t count, float y, float z, flo
     }
 }
 
-const dense_field dense_csg = {"csg", -1.0f, 1.0f, csg_row};
-const dense_field dense_gyroid = {"gyroid", -1.0f, 1.0f, gyroid_row};
-const dense_field dense_menger4 = {"menger L=4", -1.2f, 1.2f, menger_row};
+static inline float menger_at(float x, float y, float z)
+{
+    float drilled = 1e30f;
+    for (int l = 0, holes = 1; l < MENGER_LEVELS; l++, holes *= 3) {
+        float dx = hole_distance(x, holes), dy = hole_distance(y, holes), dz = hole_distance(z, holes);
+        float nearest = fminf(fminf(fmaxf(dx, dy), fmaxf(dy, dz)), fmaxf(dz, dx));
+        drilled = fminf(drilled, nearest - 1.0f / (3.0f * (float)holes));
+    }
+    return fmaxf(fmaxf(fmaxf(fabsf(x), fabsf(y)), fabsf(z)) - 1.0f, -drilled);
+}
+
+/* All samples, point by point. */
+#define DEFINE_POINTS(NAME)                                                                                            \
+    static void NAME##_points(float lo, float step, size_t samples, float *values)                                     \
+    {                                                                                                                  \
+        _Pragma("omp parallel for schedule(static)") for (size_t k = 0; k < samples; k++)                              \
+        {                                                                                                              \
+            for (size_t j = 0; j < samples; j++)                                                                       \
+                for (size_t i = 0; i < samples; i++)                                                                   \
+                    values[(k * samples + j) * samples + i] =                                                          \
+                        NAME##_at(lo + step * (float)i, lo + step * (float)j, lo + step * (float)k);                   \
+        }                                                                                                              \
+    }
+
+DEFINE_POINTS(csg)
+DEFINE_POINTS(gyroid)
+DEFINE_POINTS(menger)
+
+const dense_field dense_csg = {"csg", -1.0f, 1.0f, csg_row, csg_points};
+const dense_field dense_gyroid = {"gyroid", -1.0f, 1.0f, gyroid_row, gyroid_points};
+const dense_field dense_menger4 = {"menger L=4", -1.2f, 1.2f, menger_row, menger_points};
+
+static float step_of(const dense_field *field, size_t samples)
+{
+    return (field->hi - field->lo) / (float)(samples - 1);
+}
 
 void dense_sample(const dense_field *field, size_t samples, float *values)
 {
-    float step = (field->hi - field->lo) / (float)(samples - 1);
+    float step = step_of(field, samples);
 #pragma omp parallel for schedule(static)
     for (size_t k = 0; k < samples; k++)
         for (size_t j = 0; j < samples; j++)
             field->row(field->lo, step, samples, field->lo + step * (float)j, field->lo + step * (float)k,
                        values + (k * samples + j) * samples);
+}
+
+void dense_sample_points(const dense_field *field, size_t samples, float *values)
+{
+    field->points(field->lo, step_of(field, samples), samples, values);
 }
 
 /* --- shapes melted together -------------------------------------------------------------------------------------- */

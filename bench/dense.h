@@ -9,6 +9,7 @@ typedef struct dense_field {
     float lo, hi; /* the cube that is sampled */
     /* Values of a row: x = x0 + i * step for i below count. */
     void (*row)(float x0, float step, size_t count, float y, float z, float *values);
+    void (*points)(float lo, float step, size_t samples, float *values);
 } dense_field;
 
 /* One shape of assets/scenes/random.lua: local coordinates are rows of `frame` (three factors and a shift). */
@@ -26,5 +27,9 @@ extern const dense_field dense_csg, dense_gyroid, dense_menger4;
 
 /* Fills samples^3 values, x fastest, on all OpenMP threads. */
 void dense_sample(const dense_field *field, size_t samples, float *values);
+
+/* The same by a function of a point that is called for each of them: nothing is shared that the compiler does not
+ * see to. */
+void dense_sample_points(const dense_field *field, size_t samples, float *values);
 
 #endif

@@ -1,5 +1,6 @@
 /* From field to mesh in host memory: Hewn beside dense sampling in C and VTK's flying edges, in turn and in one
- * process; and how its time grows. usage: extract [--runs N] [--res N] [--peers 0] [--dual 0] [--as listed|straight]
+ * process; and how its time grows. C samples rows, of which it computes once what their samples share, or points.
+ * usage: extract [--runs N] [--res N] [--peers 0] [--dual 0] [--as listed|straight]
  * [--json FILE] [SCENE ...], SCENE one of csg, gyroid, menger, random, random25, random50, random100, random10000,
  * csg256, csg1024, csg2048; FILE is bench/results/extract.json where it is not given. */
 #include <math.h>
@@ -54,6 +55,7 @@ enum { CONTESTS = sizeof contests / sizeof *contests };
 
 typedef struct outcome {
     double hewn[MOST_RUNS], sampling[MOST_RUNS], flying_edges[MOST_RUNS];
+    double points[MOST_RUNS]; /* sampling by a function of a point, which shares nothing between samples; 0: none */
     double hewn_processor[MOST_RUNS], peer_processor[MOST_RUNS]; /* both cores together: other processes do not count */
     double dual[MOST_RUNS]; /* Hewn by dual contouring, which peers here do not have */
     double stage[STAGES];   /* processor seconds of the last run */
@@ -176,6 +178,13 @@ static void run_peers(const peer *subject, uint32_t resolution, float *values, d
     *meshing = flying_edges_run(values, samples, (double)subject->lo, step, THREADS, &vertices, &out->peer_triangles);
 }
 
+static void run_points(const dense_field *field, size_t samples, float *values, double *seconds)
+{
+    double begin = hewn_clock_now();
+    dense_sample_points(field, samples, values);
+    *seconds = hewn_clock_now() - begin;
+}
+
 /* As Hewn, peers have had their memory from the system before they are timed. Of a heap a few shapes do for that: all
  * of them may take minutes. */
 static void warm_peers(const peer *subject, uint32_t resolution, float *values, outcome *out)
@@ -234,6 +243,8 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
             run_peers(&subject, resolution, values, &out->sampling[i], &out->flying_edges[i], out);
         out->hewn_processor[i] = between - begin;
         out->peer_processor[i] = bench_processor_now() - between;
+        if (peers && subject.field)
+            run_points(subject.field, samples, values, &out->points[i]);
         if (dual)
             run_hewn(extractor, &bounds, resolution, HEWN_METHOD_DC, &out->dual[i], out);
     }
@@ -243,11 +254,12 @@ static void run_contest(hewn_device *device, const contest *entry, const char *f
     hewn_scene_destroy(&scene);
 }
 
-static double paired_ratio(const outcome *result, int runs)
+/* How many times as long as Hewn a way to sample and flying edges take. */
+static double paired_ratio(const outcome *result, const double *sampling, int runs)
 {
     double ratios[MOST_RUNS];
     for (int i = 0; i < runs; i++)
-        ratios[i] = (result->sampling[i] + result->flying_edges[i]) / result->hewn[i];
+        ratios[i] = (sampling[i] + result->flying_edges[i]) / result->hewn[i];
     return bench_median(ratios, runs);
 }
 
@@ -263,13 +275,18 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
                           bool first)
 {
     double ours = bench_median(result->hewn, runs), sampling = bench_median(result->sampling, runs);
-    double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, runs);
+    double meshing = bench_median(result->flying_edges, runs), ratio = paired_ratio(result, result->sampling, runs);
+    double points = bench_median(result->points, runs), by_points = paired_ratio(result, result->points, runs);
     double dual = bench_median(result->dual, runs);
     double processor = bench_median(result->hewn_processor, runs), by_processor = processor_ratio(result, runs);
-    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx   cpu %7.3f %6.2fx   dc %8.3f   %9llu %9llu   cpu:",
-           entry->name, resolution, result->listed ? "lists" : "straight", result->first, ours, sampling, meshing,
-           ratio, processor, by_processor, dual, (unsigned long long)result->hewn_triangles,
-           (unsigned long long)result->peer_triangles);
+    printf("%-12s %5u  %-8s %6.2f %8.3f  %8.3f + %-7.3f  %5.2fx  ", entry->name, resolution,
+           result->listed ? "lists" : "straight", result->first, ours, sampling, meshing, ratio);
+    if (points > 0)
+        printf("%6.3f %6.2fx", points, by_points);
+    else
+        printf("%6s %6s ", "-", "-");
+    printf("   cpu %7.3f %6.2fx   dc %8.3f   %9llu %9llu   cpu:", processor, by_processor, dual,
+           (unsigned long long)result->hewn_triangles, (unsigned long long)result->peer_triangles);
     for (int k = 0; k < STAGES; k++)
         printf(" %s %.3f", stage_names[k], result->stage[k]);
     printf("   a brick: %.0f bytes, %.0f operations\n", result->brick_bytes, result->brick_operations);
@@ -286,6 +303,8 @@ static void print_outcome(FILE *json, const contest *entry, uint32_t resolution,
                 ", \"sampling_seconds\": %.4f, \"flying_edges_seconds\": %.4f, \"times_faster\": %.3f, "
                 "\"times_less_processor\": %.3f",
                 sampling, meshing, ratio, by_processor);
+    if (json && points > 0)
+        fprintf(json, ", \"point_sampling_seconds\": %.4f, \"times_faster_than_by_points\": %.3f", points, by_points);
     if (json && dual > 0)
         fprintf(json, ", \"hewn_dc_seconds\": %.4f", dual);
     if (json)
@@ -381,8 +400,8 @@ int main(int argc, char **argv)
     printf(
         "device %s; dense sampling in C and VTK flying edges (%s) on %d threads; medians of %d runs in turn, seconds\n",
         hewn_device_get_info(device)->name, flying_edges_backend(), THREADS, runs);
-    printf("%-12s %5s  %-8s %6s %8s  %18s  %6s   %19s   %11s   %9s %9s\n", "scene", "cells", "as", "first", "Hewn mc",
-           "sampling + VTK", "ratio", "processor, ratio", "Hewn dc", "triangles", "VTK's");
+    printf("%-12s %5s  %-8s %6s %8s  %18s  %6s  %14s   %19s   %11s   %9s %9s\n", "scene", "cells", "as", "first",
+           "Hewn mc", "by rows + VTK", "ratio", "points, ratio", "processor, ratio", "Hewn dc", "triangles", "VTK's");
     double speed = copying_speed();
     printf("copying moves %.1f GB/s (read and written); load of the machine %.1f\n", 1e-9 * speed, machine_load());
     if (json)
